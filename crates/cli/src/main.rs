@@ -1,0 +1,2 @@
+//! The `isochore` command.
+fn main() {}

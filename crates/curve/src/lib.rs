@@ -1,0 +1,1 @@
+//! Spine curves and the frames that move along them.

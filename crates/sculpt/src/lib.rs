@@ -1,0 +1,1 @@
+//! The stroke log, which is the recipe, and its replay on meshes and points.
