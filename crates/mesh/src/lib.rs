@@ -12,10 +12,12 @@ mod aabb;
 mod block;
 mod distance;
 mod monitor;
+mod shapes;
 mod tri_mesh;
 
 pub use aabb::Aabb;
 pub use block::{DistanceBlock, LANES, PointBlock};
 pub use distance::Distance;
 pub use monitor::{Cancelled, Monitor, Silent};
+pub use shapes::{Capsule, Ellipsoid, RoundedBox, ShapeError, Sphere, Torus};
 pub use tri_mesh::{CornerAttributes, SubTriangle, Subdivision, TriMesh, VertexAttributes};

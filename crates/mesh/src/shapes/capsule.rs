@@ -1,0 +1,58 @@
+use glam::{DVec3, dvec3};
+
+use super::{ShapeError, inverse_or_zero, positive};
+use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
+
+/// All points within a radius of a segment on the z axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capsule {
+    radius: f64,
+    half_length: f64,
+}
+
+impl Capsule {
+    /// A capsule about the segment from z = −`half_length` to z = `half_length`; its ends reach `radius` farther. Model units.
+    ///
+    /// # Errors
+    /// [`ShapeError::NotPositive`].
+    pub fn new(radius: f64, half_length: f64) -> Result<Self, ShapeError> {
+        Ok(Self {
+            radius: positive("capsule", "radius", radius)?,
+            half_length: positive("capsule", "half length", half_length)?,
+        })
+    }
+
+    /// Radius, model units.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Half the length of the segment, model units.
+    pub fn half_length(&self) -> f64 {
+        self.half_length
+    }
+}
+
+impl Distance for Capsule {
+    fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
+        for i in 0..LANES {
+            let (x, y) = (points.x[i], points.y[i]);
+            let z = points.z[i] - points.z[i].clamp(-self.half_length, self.half_length);
+            let length = (x * x + y * y + z * z).sqrt();
+            let inverse = inverse_or_zero(length);
+            out.value[i] = length - self.radius;
+            out.gradient.x[i] = x * inverse;
+            out.gradient.y[i] = y * inverse;
+            out.gradient.z[i] = z * inverse;
+        }
+    }
+
+    fn bounds(&self) -> Aabb {
+        let corner = dvec3(self.radius, self.radius, self.half_length + self.radius);
+        Aabb { min: -corner, max: corner }
+    }
+
+    fn centroid(&self) -> DVec3 {
+        DVec3::ZERO
+    }
+}

@@ -1,0 +1,71 @@
+use glam::DVec3;
+
+use super::{ShapeError, inverse_or_zero, positive, sign_or_zero};
+use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
+
+/// A box with faces across the axes, its edges and corners rounded by a rolling ball.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoundedBox {
+    half_extents: DVec3,
+    rounding: f64,
+}
+
+impl RoundedBox {
+    /// A box from −`half_extents` to `half_extents`. The rounding takes material away inside these extents: the faces stay where
+    /// they are, and edges get the radius `rounding`. Zero gives sharp edges. Model units.
+    ///
+    /// # Errors
+    /// [`ShapeError::NotPositive`]; [`ShapeError::Rounding`] if it is negative or larger than the smallest half extent.
+    pub fn new(half_extents: DVec3, rounding: f64) -> Result<Self, ShapeError> {
+        for extent in half_extents.to_array() {
+            positive("box", "half extents", extent)?;
+        }
+        let limit = half_extents.min_element();
+        if !(0.0..=limit).contains(&rounding) {
+            return Err(ShapeError::Rounding { rounding, limit });
+        }
+        Ok(Self { half_extents, rounding })
+    }
+
+    /// Half the edge lengths of the box before rounding, model units.
+    pub fn half_extents(&self) -> DVec3 {
+        self.half_extents
+    }
+
+    /// Radius of the edges, model units.
+    pub fn rounding(&self) -> f64 {
+        self.rounding
+    }
+}
+
+impl Distance for RoundedBox {
+    /// The distance to the inner box that the ball's center sweeps, less the ball's radius.
+    fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
+        let core = self.half_extents - self.rounding;
+        for i in 0..LANES {
+            let (x, y, z) = (points.x[i], points.y[i], points.z[i]);
+            let (qx, qy, qz) = (x.abs() - core.x, y.abs() - core.y, z.abs() - core.z);
+            let (ox, oy, oz) = (qx.max(0.0), qy.max(0.0), qz.max(0.0));
+            let outside = (ox * ox + oy * oy + oz * oz).sqrt();
+            let nearest = qx.max(qy).max(qz);
+            out.value[i] = outside + nearest.min(0.0) - self.rounding;
+
+            let inverse = inverse_or_zero(outside);
+            // Inside the core the nearest face alone gives the direction; two faces equally near give none.
+            let ties = f64::from(qx == nearest) + f64::from(qy == nearest) + f64::from(qz == nearest);
+            let face = if outside == 0.0 && ties == 1.0 { 1.0 } else { 0.0 };
+            let along = |q: f64, o: f64| o * inverse + if q == nearest { face } else { 0.0 };
+            out.gradient.x[i] = sign_or_zero(x) * along(qx, ox);
+            out.gradient.y[i] = sign_or_zero(y) * along(qy, oy);
+            out.gradient.z[i] = sign_or_zero(z) * along(qz, oz);
+        }
+    }
+
+    fn bounds(&self) -> Aabb {
+        Aabb { min: -self.half_extents, max: self.half_extents }
+    }
+
+    fn centroid(&self) -> DVec3 {
+        DVec3::ZERO
+    }
+}

@@ -1,0 +1,47 @@
+use glam::DVec3;
+
+use super::{ShapeError, inverse_or_zero, positive};
+use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
+
+/// A ball about the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sphere {
+    radius: f64,
+}
+
+impl Sphere {
+    /// A sphere of the given radius, model units.
+    ///
+    /// # Errors
+    /// [`ShapeError::NotPositive`].
+    pub fn new(radius: f64) -> Result<Self, ShapeError> {
+        Ok(Self { radius: positive("sphere", "radius", radius)? })
+    }
+
+    /// Radius, model units.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+impl Distance for Sphere {
+    fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
+        for i in 0..LANES {
+            let (x, y, z) = (points.x[i], points.y[i], points.z[i]);
+            let length = (x * x + y * y + z * z).sqrt();
+            let inverse = inverse_or_zero(length);
+            out.value[i] = length - self.radius;
+            out.gradient.x[i] = x * inverse;
+            out.gradient.y[i] = y * inverse;
+            out.gradient.z[i] = z * inverse;
+        }
+    }
+
+    fn bounds(&self) -> Aabb {
+        Aabb { min: DVec3::splat(-self.radius), max: DVec3::splat(self.radius) }
+    }
+
+    fn centroid(&self) -> DVec3 {
+        DVec3::ZERO
+    }
+}
