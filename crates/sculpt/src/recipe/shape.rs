@@ -1,0 +1,138 @@
+//! The shapes that targets and tools can have.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Transform, tagged::tagged};
+
+/// A target that the recipe makes itself, centered on the origin.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum TargetShape {
+    /// An icosahedron subdivided towards the sphere: triangles of nearly equal size.
+    Icosphere(Icosphere),
+    /// A box with a regular grid on every face.
+    Box(BoxMesh),
+    /// A sphere with poles on the z axis, cut along meridians and parallels.
+    Sphere(SphereMesh),
+}
+
+tagged!(TargetShape { "icosphere" => Icosphere(Icosphere), "box" => Box(BoxMesh), "sphere" => Sphere(SphereMesh) });
+
+/// See [`TargetShape::Icosphere`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Icosphere {
+    /// Distance of the vertices from the origin, model units.
+    pub radius: f64,
+    /// How often each triangle is split into four; 20 · 4ⁿ triangles.
+    pub subdivisions: u32,
+}
+
+/// See [`TargetShape::Box`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxMesh {
+    /// Half the edge lengths along x, y and z, model units.
+    pub half_extents: [f64; 3],
+    /// Cells along x, y and z.
+    pub segments: [u32; 3],
+}
+
+/// See [`TargetShape::Sphere`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SphereMesh {
+    /// Distance of the vertices from the origin, model units.
+    pub radius: f64,
+    /// Cells round the equator, and from pole to pole.
+    pub segments: [u32; 2],
+}
+
+/// The solid that a tool's field surrounds, in the tool's own coordinates.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum ToolShape {
+    /// A ball about the origin.
+    Sphere(Sphere),
+    /// All points near a segment on the z axis.
+    Capsule(Capsule),
+    /// A box about the origin, its edges rounded on request.
+    Box(RoundedBox),
+    /// A ring about the z axis.
+    Torus(Torus),
+    /// An ellipsoid about the origin.
+    Ellipsoid(Ellipsoid),
+    /// The inside of a mesh.
+    Mesh(MeshTool),
+}
+
+tagged!(ToolShape {
+    "sphere" => Sphere(Sphere),
+    "capsule" => Capsule(Capsule),
+    "box" => Box(RoundedBox),
+    "torus" => Torus(Torus),
+    "ellipsoid" => Ellipsoid(Ellipsoid),
+    "mesh" => Mesh(MeshTool),
+});
+
+/// See [`ToolShape::Sphere`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sphere {
+    /// Radius, model units.
+    pub radius: f64,
+}
+
+/// See [`ToolShape::Capsule`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Capsule {
+    /// Distance of the surface from the segment, model units.
+    pub radius: f64,
+    /// The segment runs from `-half_length` to `half_length`, model units.
+    pub half_length: f64,
+}
+
+/// See [`ToolShape::Box`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RoundedBox {
+    /// Half the edge lengths, rounding included, model units.
+    pub half_extents: [f64; 3],
+    /// Radius of the edges, model units.
+    #[serde(default, skip_serializing_if = "super::is_default")]
+    pub rounding: f64,
+}
+
+/// See [`ToolShape::Torus`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Torus {
+    /// Radius of the ring's center line, model units.
+    pub major: f64,
+    /// Distance of the surface from that line, model units.
+    pub minor: f64,
+}
+
+/// See [`ToolShape::Ellipsoid`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ellipsoid {
+    /// Half axes along x, y and z, model units.
+    pub radii: [f64; 3],
+}
+
+/// See [`ToolShape::Mesh`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshTool {
+    /// Mesh file, relative to the recipe.
+    pub mesh: String,
+    /// Cells of the distance grid along the longest side of the mesh, padding not counted. More are taken where a cell would be
+    /// longer than a sixth of the support.
+    pub resolution: u32,
+    /// Placement of the mesh in the tool's coordinates.
+    #[serde(default, skip_serializing_if = "super::is_default")]
+    pub transform: Transform,
+}
