@@ -1,0 +1,304 @@
+//! Closest points of a curve: the nearest one, and every local minimum of the distance.
+
+use glam::DVec3;
+
+use crate::Curve;
+use crate::quadrature::gauss;
+
+/// Turning of the tangent inside one piece of a [`ClosestPoint`], radians, at most. Larger: fewer pieces, but more of them
+/// fail the monotonicity test and are split again at every query. Smaller: more spheres to test.
+const PIECE_TURNING: f64 = 0.3;
+
+/// Halvings of a smooth piece at most while its turning is too large; reached only around cusps.
+const PIECE_DEPTH: u32 = 12;
+
+/// Halvings of a piece during a query where the derivative of the distance is not monotonic. A smaller number misses minima
+/// that are close together beyond the center of curvature; each more doubles the cost of such queries.
+const QUERY_DEPTH: u32 = 6;
+
+/// Bracketed Newton steps at most: enough for bisection alone to reach rounding.
+const STEPS: usize = 60;
+
+/// A point of a curve at which the distance to the query is a local minimum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveProjection {
+    /// Parameter on the curve.
+    pub parameter: f64,
+    /// Position on the curve.
+    pub position: DVec3,
+    /// Distance from the query, model units.
+    pub distance: f64,
+}
+
+/// A curve cut into pieces with bounding spheres, ready for many closest-point queries.
+#[derive(Debug, Clone)]
+pub struct ClosestPoint<C> {
+    curve: C,
+    pieces: Vec<Piece>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    start: f64,
+    end: f64,
+    /// Position at the middle parameter.
+    center: DVec3,
+    /// Longest way along the curve from the center to an end: no point of the piece is farther.
+    radius: f64,
+    is_first: bool,
+    is_last: bool,
+}
+
+/// Half the derivative of the squared distance by the parameter, and its own derivative.
+struct Slope {
+    value: f64,
+    derivative: f64,
+}
+
+impl<C: Curve> ClosestPoint<C> {
+    /// Prepares `curve` for queries.
+    pub fn new(curve: C) -> Self {
+        let mut pieces = Vec::new();
+        for pair in curve.breaks().windows(2) {
+            cut(&curve, pair[0], pair[1], PIECE_DEPTH, &mut pieces);
+        }
+        let last = pieces.len() - 1;
+        pieces[0].is_first = !curve.is_closed();
+        pieces[last].is_last = !curve.is_closed();
+        Self { curve, pieces }
+    }
+
+    /// The curve.
+    pub fn curve(&self) -> &C {
+        &self.curve
+    }
+
+    /// The point of the curve nearest to `query`; of several at the same distance, the one with the smallest parameter.
+    pub fn closest(&self, query: DVec3) -> CurveProjection {
+        let mut best = CurveProjection { parameter: 0.0, position: DVec3::ZERO, distance: f64::INFINITY };
+        let mut nearest = 0;
+        for (index, piece) in self.pieces.iter().enumerate() {
+            let distance = piece.center.distance(query);
+            if distance < best.distance {
+                nearest = index;
+                best = CurveProjection { parameter: 0.5 * (piece.start + piece.end), position: piece.center, distance };
+            }
+        }
+        // The most promising piece first: it makes the bound that drops the others. Its own turn comes again for nothing.
+        let order = std::iter::once(nearest).chain((0..self.pieces.len()).filter(|&index| index != nearest));
+        for index in order {
+            let piece = &self.pieces[index];
+            if piece.center.distance(query) - piece.radius <= best.distance {
+                self.minima(piece, query, &mut |found| {
+                    let is_tie = found.distance == best.distance && found.parameter < best.parameter;
+                    if found.distance < best.distance || is_tie {
+                        best = found;
+                    }
+                });
+            }
+        }
+        best
+    }
+
+    /// The nearest points for many queries, in their order.
+    pub fn closest_many(&self, queries: &[DVec3]) -> Vec<CurveProjection> {
+        queries.iter().map(|&query| self.closest(query)).collect()
+    }
+
+    /// Every local minimum of the distance to `query` that is not farther than `within`, nearest first.
+    ///
+    /// The ends of an open curve count where the distance grows from them. A query at the center of an arc has no isolated
+    /// minimum; [`closest`](Self::closest) still answers there.
+    pub fn branches(&self, query: DVec3, within: f64) -> Vec<CurveProjection> {
+        let mut found = Vec::new();
+        for piece in &self.pieces {
+            if piece.center.distance(query) - piece.radius <= within {
+                self.minima(piece, query, &mut |branch| {
+                    if branch.distance <= within {
+                        found.push(branch);
+                    }
+                });
+            }
+        }
+        found.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.parameter.total_cmp(&b.parameter)));
+        found
+    }
+
+    fn project(&self, parameter: f64, query: DVec3) -> CurveProjection {
+        let position = self.curve.position(parameter);
+        CurveProjection { parameter, position, distance: position.distance(query) }
+    }
+
+    fn slope(&self, parameter: f64, query: DVec3) -> Slope {
+        let jet = self.curve.jet(parameter);
+        let offset = jet.position - query;
+        Slope { value: offset.dot(jet.first), derivative: jet.first.length_squared() + offset.dot(jet.second) }
+    }
+
+    /// Reports the local minima of a piece: roots with rising slope in (start, end], and the ends of an open curve.
+    fn minima(&self, piece: &Piece, query: DVec3, report: &mut impl FnMut(CurveProjection)) {
+        let start = self.slope(piece.start, query);
+        let end = self.slope(piece.end, query);
+        if piece.is_first && start.value >= 0.0 {
+            report(self.project(piece.start, query));
+        }
+        if piece.is_last && end.value < 0.0 {
+            report(self.project(piece.end, query));
+        }
+        self.roots((piece.start, &start), (piece.end, &end), query, QUERY_DEPTH, report);
+    }
+
+    fn roots(
+        &self,
+        (low, at_low): (f64, &Slope),
+        (high, at_high): (f64, &Slope),
+        query: DVec3,
+        depth: u32,
+        report: &mut impl FnMut(CurveProjection),
+    ) {
+        let middle = 0.5 * (low + high);
+        let at_middle = self.slope(middle, query);
+        let is_rising = at_low.derivative > 0.0 && at_middle.derivative > 0.0 && at_high.derivative > 0.0;
+        let is_falling = at_low.derivative < 0.0 && at_middle.derivative < 0.0 && at_high.derivative < 0.0;
+        if depth == 0 || is_rising {
+            if at_low.value < 0.0 && at_high.value >= 0.0 {
+                report(self.project(self.root(low, high, query), query));
+            }
+        } else if !is_falling {
+            self.roots((low, at_low), (middle, &at_middle), query, depth - 1, report);
+            self.roots((middle, &at_middle), (high, at_high), query, depth - 1, report);
+        }
+    }
+
+    /// The root of the slope in (low, high], where it is negative at `low` and not at `high`.
+    fn root(&self, mut low: f64, mut high: f64, query: DVec3) -> f64 {
+        let size = high - low;
+        let mut parameter = 0.5 * (low + high);
+        for _ in 0..STEPS {
+            let slope = self.slope(parameter, query);
+            if slope.value < 0.0 {
+                low = parameter;
+            } else {
+                high = parameter;
+            }
+            let step = -slope.value / slope.derivative;
+            if step.abs() <= f64::EPSILON * (parameter.abs() + size) {
+                break;
+            }
+            let next = parameter + step;
+            parameter = if next > low && next < high { next } else { 0.5 * (low + high) };
+        }
+        parameter
+    }
+}
+
+/// Halves [start, end] until the tangent turns little, and appends the parts.
+fn cut(curve: &impl Curve, start: f64, end: f64, depth: u32, pieces: &mut Vec<Piece>) {
+    let middle = 0.5 * (start + end);
+    let tangents = [start, 0.5 * (start + middle), middle, 0.5 * (middle + end), end].map(|u| curve.jet(u).tangent());
+    let turning: f64 =
+        tangents.windows(2).map(|pair| libm::atan2(pair[0].cross(pair[1]).length(), pair[0].dot(pair[1]))).sum();
+    if turning > PIECE_TURNING && depth > 0 {
+        cut(curve, start, middle, depth - 1, pieces);
+        cut(curve, middle, end, depth - 1, pieces);
+        return;
+    }
+    let speed = &mut |u| curve.jet(u).speed();
+    // The margin covers the error of the quadrature on so small a turn, and rounding.
+    let radius = gauss(speed, start, middle).max(gauss(speed, middle, end)) * (1.0 + 1e-6);
+    pieces.push(Piece { start, end, center: curve.position(middle), radius, is_first: false, is_last: false });
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{Bezier, CubicSpline, EndCondition, Parametrization, TrigonometricCurve};
+
+    /// Nearest of many samples: an upper bound within the sampling error of the true distance.
+    fn brute_force(curve: &impl Curve, query: DVec3, samples: usize) -> f64 {
+        let (first, last) = curve.domain();
+        (0..=samples)
+            .map(|i| curve.position(first + (last - first) * i as f64 / samples as f64).distance(query))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn helix_axis_points_have_one_branch_a_turn() {
+        let helix = TrigonometricCurve::helix(1.0, 0.05, (0.0, 4.0 * std::f64::consts::TAU));
+        let search = ClosestPoint::new(&helix);
+        // Outside the helix near u = 2 turns: minima on that turn and on its neighbors.
+        let query = helix.position(2.0 * std::f64::consts::TAU) * DVec3::new(1.5, 1.0, 1.0);
+        let branches = search.branches(query, 10.0);
+        assert_eq!(branches.len(), 5, "one minimum on each of the turns 0 to 4: {branches:?}");
+        assert!((branches[0].distance - 0.5).abs() < 1e-14);
+        for pair in branches.windows(2) {
+            assert!(pair[0].distance <= pair[1].distance);
+        }
+    }
+
+    #[test]
+    fn ends_of_open_curves_are_branches() {
+        let line = Bezier::new(vec![DVec3::ZERO, DVec3::X]);
+        let search = ClosestPoint::new(&line);
+        let before = search.closest(DVec3::new(-2.0, 1.0, 0.0));
+        assert_eq!((before.parameter, before.position), (0.0, DVec3::ZERO));
+        let after = search.closest(DVec3::new(2.0, 1.0, 0.0));
+        assert_eq!((after.parameter, after.position), (1.0, DVec3::X));
+        assert!((search.closest(DVec3::new(0.25, 3.0, 0.0)).parameter - 0.25).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_center_of_a_circle_still_has_an_answer() {
+        let circle = TrigonometricCurve::helix(2.0, 0.0, (0.0, std::f64::consts::TAU));
+        let found = ClosestPoint::new(&circle).closest(DVec3::ZERO);
+        assert!((found.distance - 2.0).abs() < 1e-15);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(300))]
+
+        #[test]
+        fn nothing_is_nearer_than_the_closest(
+            coordinates in prop::collection::vec(-1.0..1.0f64, 18),
+            query in prop::array::uniform3(-1.5..1.5f64),
+            closed: bool,
+        ) {
+            let points: Vec<DVec3> = coordinates.chunks(3).map(DVec3::from_slice).collect();
+            let spline = if closed {
+                CubicSpline::closed(&points, Parametrization::Centripetal)
+            } else {
+                CubicSpline::open(&points, Parametrization::Centripetal, EndCondition::Natural)
+            }.unwrap();
+            let query = DVec3::from_array(query);
+            let search = ClosestPoint::new(&spline);
+            let found = search.closest(query);
+            let sampled = brute_force(&spline, query, 20_000);
+            prop_assert!(found.distance <= sampled + 1e-15, "{} against {sampled}", found.distance);
+            // Samples are 1e-3 apart at most, and distances have slope one.
+            prop_assert!(found.distance >= sampled - 1e-3);
+            prop_assert!((spline.position(found.parameter) - found.position).length() == 0.0);
+            // The closest point is the first of the branches.
+            let branches = search.branches(query, f64::INFINITY);
+            prop_assert!((branches[0].distance - found.distance).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn all_branches_are_found() {
+        // Sign changes of the sampled slope count the minima; queries lie where no two of them merge.
+        let knot = TrigonometricCurve::torus_knot();
+        let search = ClosestPoint::new(&knot);
+        for query in [DVec3::new(0.1, 0.2, 0.05), DVec3::new(0.6, 0.1, 0.0), DVec3::new(1.4, 0.3, -0.2)] {
+            let samples = 100_000;
+            let slope = |i: usize| {
+                let jet = knot.jet(std::f64::consts::TAU * i as f64 / samples as f64);
+                (jet.position - query).dot(jet.first)
+            };
+            let expected = (0..samples).filter(|&i| slope(i) < 0.0 && slope(i + 1) >= 0.0).count();
+            let found = search.branches(query, f64::INFINITY);
+            assert_eq!(found.len(), expected, "query {query}");
+        }
+    }
+}

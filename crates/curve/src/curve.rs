@@ -1,0 +1,111 @@
+//! What a parametric space curve is, and its differential geometry at a parameter.
+
+use std::fmt::Debug;
+
+use glam::DVec3;
+
+/// A space curve given by a formula, three times differentiable between its [breaks](Curve::breaks).
+pub trait Curve: Debug + Send + Sync {
+    /// First and last parameter; the first is the smaller.
+    fn domain(&self) -> (f64, f64);
+
+    /// Position and derivatives at `parameter`, which implementors clamp or wrap into the domain where they must.
+    fn jet(&self, parameter: f64) -> CurveJet;
+
+    /// True where the last point of the domain is the first one again, with the same tangent.
+    fn is_closed(&self) -> bool {
+        false
+    }
+
+    /// Parameters where a derivative up to the third may jump, ends of the domain included, ascending.
+    /// Quadratures never integrate across one.
+    fn breaks(&self) -> Vec<f64> {
+        let (first, last) = self.domain();
+        vec![first, last]
+    }
+
+    /// Position at `parameter`.
+    fn position(&self, parameter: f64) -> DVec3 {
+        self.jet(parameter).position
+    }
+}
+
+impl<C: Curve + ?Sized> Curve for &C {
+    fn domain(&self) -> (f64, f64) {
+        (**self).domain()
+    }
+
+    fn jet(&self, parameter: f64) -> CurveJet {
+        (**self).jet(parameter)
+    }
+
+    fn is_closed(&self) -> bool {
+        (**self).is_closed()
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        (**self).breaks()
+    }
+
+    fn position(&self, parameter: f64) -> DVec3 {
+        (**self).position(parameter)
+    }
+}
+
+/// Position of a curve and its first three derivatives by the parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveJet {
+    /// Position, model units.
+    pub position: DVec3,
+    /// First derivative.
+    pub first: DVec3,
+    /// Second derivative.
+    pub second: DVec3,
+    /// Third derivative.
+    pub third: DVec3,
+}
+
+impl CurveJet {
+    /// Parametric speed |x′|.
+    pub fn speed(&self) -> f64 {
+        self.first.length()
+    }
+
+    /// Unit tangent; zero at a cusp, where the speed vanishes.
+    pub fn tangent(&self) -> DVec3 {
+        self.first.normalize_or_zero()
+    }
+
+    /// Curvature vector κ n, per model unit: the derivative of the unit tangent by arc length. Zero at a cusp.
+    pub fn curvature_vector(&self) -> DVec3 {
+        let squared_speed = self.first.length_squared();
+        if squared_speed == 0.0 {
+            return DVec3::ZERO;
+        }
+        (self.second - self.first * (self.second.dot(self.first) / squared_speed)) / squared_speed
+    }
+
+    /// Curvature |x′ × x″| / |x′|³, per model unit, never negative. Zero at a cusp.
+    pub fn curvature(&self) -> f64 {
+        let speed = self.speed();
+        if speed == 0.0 { 0.0 } else { self.first.cross(self.second).length() / (speed * speed * speed) }
+    }
+
+    /// Torsion det(x′, x″, x‴) / |x′ × x″|², per model unit, with n′ = −κ t + τ b. Zero where the curvature vanishes,
+    /// where torsion has no value.
+    pub fn torsion(&self) -> f64 {
+        let binormal = self.first.cross(self.second);
+        let squared = binormal.length_squared();
+        if squared == 0.0 { 0.0 } else { binormal.dot(self.third) / squared }
+    }
+
+    /// Derivative of the unit tangent by the parameter. Zero at a cusp.
+    pub fn tangent_derivative(&self) -> DVec3 {
+        self.curvature_vector() * self.speed()
+    }
+
+    /// Unit principal normal, or none where the curvature vanishes.
+    pub fn normal(&self) -> Option<DVec3> {
+        self.curvature_vector().try_normalize()
+    }
+}
