@@ -195,9 +195,8 @@ impl<C: Curve> ClosestPoint<C> {
 /// Halves [start, end] until the tangent turns little, and appends the parts.
 fn cut(curve: &impl Curve, start: f64, end: f64, depth: u32, pieces: &mut Vec<Piece>) {
     let middle = 0.5 * (start + end);
-    let tangents = [start, 0.5 * (start + middle), middle, 0.5 * (middle + end), end].map(|u| curve.jet(u).tangent());
-    let turning: f64 =
-        tangents.windows(2).map(|pair| libm::atan2(pair[0].cross(pair[1]).length(), pair[0].dot(pair[1]))).sum();
+    // Integrated, since sampled tangents of a whole turn are all alike.
+    let turning = gauss(&mut |u| curve.jet(u).tangent_derivative().length(), start, end);
     if turning > PIECE_TURNING && depth > 0 {
         cut(curve, start, middle, depth - 1, pieces);
         cut(curve, middle, end, depth - 1, pieces);
