@@ -9,15 +9,29 @@
 //! - Lengths are in model units, coordinates are `f64`.
 
 mod aabb;
+mod assets;
 mod block;
+mod check;
+mod closed_mesh;
+mod compensated_sum;
 mod distance;
+pub mod io;
+mod measure;
 mod monitor;
+pub mod primitives;
 mod shapes;
+mod topology;
 mod tri_mesh;
 
 pub use aabb::Aabb;
+pub use assets::{Assets, GltfAssets};
 pub use block::{DistanceBlock, LANES, PointBlock};
+pub use check::Check;
+pub use closed_mesh::{ClosedMesh, MeshError};
+pub use compensated_sum::CompensatedSum;
 pub use distance::Distance;
+pub use measure::{Components, EdgeLengths};
 pub use monitor::{Cancelled, Monitor, Silent};
 pub use shapes::{Capsule, Ellipsoid, RoundedBox, ShapeError, Sphere, Torus};
+pub use topology::Topology;
 pub use tri_mesh::{CornerAttributes, SubTriangle, Subdivision, TriMesh, VertexAttributes};

@@ -1,6 +1,17 @@
 //! The triangle mesh: shared topology, attributes on corners.
 
-use glam::{DVec2, DVec3, DVec4};
+mod attributes;
+mod normals;
+mod subdivided;
+mod transformed;
+mod welded;
+
+use glam::DVec3;
+
+pub use attributes::{CornerAttributes, VertexAttributes};
+pub use subdivided::{SubTriangle, Subdivision};
+
+use crate::Assets;
 
 /// A triangle mesh. Empty attribute lists mean that the mesh has no such attribute.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -13,44 +24,38 @@ pub struct TriMesh {
     pub corner: CornerAttributes,
     /// Attributes of the vertices.
     pub vertex: VertexAttributes,
+    /// Index into `materials` by triangle; empty where the mesh has no materials.
+    pub triangle_materials: Vec<u32>,
+    /// Names of the materials. An empty name stands for triangles that have none beside others that do.
+    pub materials: Vec<String>,
+    /// What the file said beyond geometry, carried from reading to writing.
+    pub assets: Assets,
 }
 
-/// Attributes by corner: one entry a triangle, three values in the order of its vertices.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct CornerAttributes {
-    /// Sets of texture coordinates, each as long as the triangles.
-    pub uvs: Vec<Vec<[DVec2; 3]>>,
-    /// Shading normals, unit length.
-    pub normals: Vec<[DVec3; 3]>,
-    /// Linear RGBA, 0 to 1.
-    pub colors: Vec<[DVec4; 3]>,
-}
+impl TriMesh {
+    /// A mesh without attributes.
+    pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
+        Self { positions, triangles, ..Self::default() }
+    }
 
-/// Attributes by vertex.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct VertexAttributes {
-    /// Linear RGBA, 0 to 1.
-    pub colors: Vec<DVec4>,
-    /// Skin influences, joint index and weight; the weights of a vertex sum to one.
-    pub skin: Vec<Vec<(u32, f64)>>,
-}
+    /// Positions of the three corners of `triangle`.
+    ///
+    /// # Panics
+    /// If the triangle or one of its vertices does not exist.
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|vertex| self.positions[vertex as usize])
+    }
 
-/// A finer tessellation of a mesh: its triangles, each inside one triangle of the original.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Subdivision {
-    /// Positions of all vertices; those of the original come first, unchanged.
-    pub positions: Vec<DVec3>,
-    /// The triangles.
-    pub triangles: Vec<SubTriangle>,
-}
-
-/// One triangle of a [`Subdivision`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SubTriangle {
-    /// Indices into the positions of the subdivision.
-    pub vertices: [u32; 3],
-    /// The original triangle that holds this one.
-    pub parent: u32,
-    /// Barycentric coordinates of the three corners in the parent.
-    pub corners: [DVec3; 3],
+    /// The same surface with every triangle turned over, attributes included; shading normals are negated.
+    pub fn flipped(mut self) -> Self {
+        fn turn<T>(corners: &mut [[T; 3]]) {
+            corners.iter_mut().for_each(|corners| corners.swap(1, 2));
+        }
+        turn(&mut self.triangles);
+        self.corner.uvs.iter_mut().for_each(|set| turn(set));
+        turn(&mut self.corner.normals);
+        turn(&mut self.corner.colors);
+        self.corner.normals.iter_mut().flatten().for_each(|normal| *normal = -*normal);
+        self
+    }
 }

@@ -1,0 +1,127 @@
+//! Mesh files: OBJ, glTF, GLB, PLY, STL and OFF.
+//!
+//! [`read`] and [`write`] choose the format by the file's extension; [`read_bytes`] and [`write_to`] need no files.
+//! What a format can hold decides what survives: see [`Format`].
+
+mod format;
+mod obj;
+mod polygon;
+mod read_error;
+mod write_error;
+
+use std::io::Write;
+use std::path::Path;
+
+pub use format::Format;
+pub use read_error::{LineProblem, ParseError, ReadError};
+pub use write_error::WriteError;
+
+use crate::TriMesh;
+
+/// Reads the mesh file at `path`, and the files beside it that it refers to.
+///
+/// Polygons are triangulated. Vertices that the format splits at seams are welded. Indices are in range and positions
+/// finite in what comes back; everything else is for [`TriMesh::check`].
+///
+/// # Errors
+/// [`ReadError`], naming the file and what in it is at fault.
+pub fn read(path: impl AsRef<Path>) -> Result<TriMesh, ReadError> {
+    let path = path.as_ref();
+    let format = Format::of_path(path).ok_or_else(|| ReadError::UnknownFormat { path: path.to_owned() })?;
+    let failed = |source| ReadError::Io { path: path.to_owned(), source };
+    let bytes = std::fs::read(path).map_err(failed)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    parse(format, &bytes, &|relative| std::fs::read(folder.join(relative)))
+        .map_err(|source| ReadError::Parse { path: path.to_owned(), source: Box::new(source) })
+}
+
+/// Reads a mesh from memory, as [`read`] does from a file. References to other files are errors.
+///
+/// # Errors
+/// [`ParseError`], naming the line or element at fault.
+pub fn read_bytes(format: Format, bytes: &[u8]) -> Result<TriMesh, ParseError> {
+    parse(format, bytes, &|_| Err(std::io::ErrorKind::NotFound.into()))
+}
+
+/// Gives the bytes of a file that another one refers to, by its path relative to that one.
+type Resolve<'a> = &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>;
+
+fn parse(format: Format, bytes: &[u8], _resolve: Resolve<'_>) -> Result<TriMesh, ParseError> {
+    let mesh = match format {
+        Format::Obj => obj::parse(bytes)?,
+        _ => return Err(ParseError::Malformed("reading this format is not there yet".into())),
+    };
+    if mesh.triangles.is_empty() {
+        return Err(ParseError::Empty);
+    }
+    mesh.check_valid()?;
+    Ok(mesh)
+}
+
+/// Writes `mesh` to `path`, in the format of its extension, whole or not at all: into a temporary file in the same
+/// folder first, which then takes the place of what was there.
+///
+/// # Errors
+/// [`WriteError`], naming the file. An existing file is untouched then.
+pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
+    let path = path.as_ref();
+    let format = Format::of_path(path).ok_or_else(|| WriteError::UnknownFormat { path: path.to_owned() })?;
+    check_writable(format, mesh, path)?;
+    let failed = |source| WriteError::Io { path: path.to_owned(), source };
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let file = tempfile::Builder::new().prefix(".isochore-").tempfile_in(folder).map_err(failed)?;
+    let mut buffered = std::io::BufWriter::with_capacity(1 << 20, file);
+    write_format(format, mesh, &mut buffered).map_err(failed)?;
+    let file = buffered.into_inner().map_err(|error| failed(error.into_error()))?;
+    file.as_file().sync_all().map_err(failed)?;
+    keep_permissions(file.as_file(), path).map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
+/// Writes `mesh` in `format` to `writer`.
+///
+/// # Errors
+/// [`WriteError`]; what was written before is the writer's to discard.
+pub fn write_to(format: Format, mesh: &TriMesh, writer: &mut dyn Write) -> Result<(), WriteError> {
+    check_writable(format, mesh, Path::new(""))?;
+    write_format(format, mesh, writer).map_err(|source| WriteError::Io { path: Path::new("").to_owned(), source })
+}
+
+fn write_format(format: Format, mesh: &TriMesh, writer: &mut dyn Write) -> std::io::Result<()> {
+    match format {
+        Format::Obj => obj::write(mesh, writer),
+        _ => Err(std::io::ErrorKind::Unsupported.into()),
+    }
+}
+
+/// Refuses meshes that would come back different in kind: invalid ones, and those beyond single precision.
+fn check_writable(format: Format, mesh: &TriMesh, path: &Path) -> Result<(), WriteError> {
+    mesh.check_valid().map_err(|source| WriteError::Invalid { path: path.to_owned(), source })?;
+    if format.is_single_precision() {
+        let is_too_large = |position: &glam::DVec3| !position.as_vec3().is_finite();
+        if let Some(vertex) = mesh.positions.iter().position(is_too_large) {
+            return Err(WriteError::TooLarge { path: path.to_owned(), vertex });
+        }
+    }
+    Ok(())
+}
+
+/// A temporary file is for its owner alone; the mesh gets the rights of the file it replaces, or the usual ones.
+#[cfg(unix)]
+fn keep_permissions(file: &std::fs::File, path: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    let permissions = match std::fs::metadata(path) {
+        Ok(replaced) => replaced.permissions(),
+        Err(_) => std::fs::Permissions::from_mode(0o644),
+    };
+    file.set_permissions(permissions)
+}
+
+#[cfg(not(unix))]
+fn keep_permissions(_file: &std::fs::File, _path: &Path) -> std::io::Result<()> {
+    Ok(())
+}

@@ -1,0 +1,192 @@
+//! Volume, area, lengths and angles.
+
+use glam::DVec3;
+
+use crate::compensated_sum::sum_terms;
+use crate::{Aabb, Topology, TriMesh};
+
+/// Shortest, mean and longest edge, model units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeLengths {
+    /// Length of the shortest edge.
+    pub min: f64,
+    /// Mean over the edges, each counted once.
+    pub mean: f64,
+    /// Length of the longest edge.
+    pub max: f64,
+}
+
+/// Connected parts of a mesh.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Components {
+    /// How many there are.
+    pub count: usize,
+    /// The component of each triangle, numbered by first occurrence.
+    pub of_triangle: Vec<u32>,
+}
+
+/// Measures panic where an index is out of range; [`TriMesh::check`] finds such triangles.
+impl TriMesh {
+    /// The smallest box that holds all vertices.
+    pub fn bounds(&self) -> Aabb {
+        Aabb::of(self.positions.iter().copied())
+    }
+
+    /// Signed volume, positive where triangles are counter-clockwise seen from outside; cubic model units.
+    ///
+    /// The sum of the tetrahedra between the triangles and the center of [`bounds`](Self::bounds), compensated, with
+    /// the same bits for any number of threads. For an open mesh it depends on that center and means little.
+    pub fn volume(&self) -> f64 {
+        let frame = Frame::of(self);
+        let [six_volumes] = sum_terms(self.triangles.len(), |triangle| {
+            let [a, b, c] = self.corners(triangle).map(|corner| frame.local(corner));
+            [a.dot(b.cross(c))]
+        });
+        frame.world_volume(six_volumes / 6.0)
+    }
+
+    /// Centroid of the volume inside the surface; the center of the bounds where there is no volume to speak of.
+    pub fn volume_centroid(&self) -> DVec3 {
+        let frame = Frame::of(self);
+        let [six_volumes, x, y, z] = sum_terms(self.triangles.len(), |triangle| {
+            let [a, b, c] = self.corners(triangle).map(|corner| frame.local(corner));
+            let six_volume = a.dot(b.cross(c));
+            let moment = (a + b + c) * six_volume;
+            [six_volume, moment.x, moment.y, moment.z]
+        });
+        if six_volumes.abs() < NO_VOLUME {
+            return frame.center;
+        }
+        frame.world(DVec3::new(x, y, z) / (4.0 * six_volumes))
+    }
+
+    /// Area of all triangles, square model units.
+    pub fn area(&self) -> f64 {
+        let frame = Frame::of(self);
+        let [twice_area] = sum_terms(self.triangles.len(), |triangle| {
+            let [a, b, c] = self.corners(triangle).map(|corner| frame.local(corner));
+            [(b - a).cross(c - a).length()]
+        });
+        0.5 * twice_area * frame.scale * frame.scale
+    }
+
+    /// Lengths of the edges; none for a mesh without triangles.
+    pub fn edge_lengths(&self) -> Option<EdgeLengths> {
+        let edges = Topology::of(self).edges;
+        if edges.is_empty() {
+            return None;
+        }
+        let length = |edge: usize| {
+            let [a, b] = edges[edge].map(|vertex| self.positions[vertex as usize]);
+            a.distance(b)
+        };
+        let (mut min, mut max) = (f64::INFINITY, 0.0_f64);
+        for edge in 0..edges.len() {
+            (min, max) = (min.min(length(edge)), max.max(length(edge)));
+        }
+        let [sum] = sum_terms(edges.len(), |edge| [length(edge)]);
+        Some(EdgeLengths { min, mean: sum / edges.len() as f64, max })
+    }
+
+    /// Interior angles of `triangle` in the order of its vertices, radians; their sum is π unless two corners coincide.
+    pub fn triangle_angles(&self, triangle: usize) -> [f64; 3] {
+        let [a, b, c] = self.corners(triangle);
+        [angle_between(b - a, c - a), angle_between(c - b, a - b), angle_between(a - c, b - c)]
+    }
+
+    /// Smallest and largest angle of any triangle, radians; none for a mesh without triangles.
+    pub fn angle_range(&self) -> Option<[f64; 2]> {
+        let angles = (0..self.triangles.len()).flat_map(|triangle| self.triangle_angles(triangle));
+        angles.fold(None, |range, angle| {
+            let [min, max] = range.unwrap_or([angle; 2]);
+            Some([min.min(angle), max.max(angle)])
+        })
+    }
+
+    /// Parts of the surface that share no vertex.
+    pub fn components(&self) -> Components {
+        let mut parents: Vec<u32> = (0..self.positions.len() as u32).collect();
+        for &[a, b, c] in &self.triangles {
+            unite(&mut parents, a, b);
+            unite(&mut parents, a, c);
+        }
+        const UNNUMBERED: u32 = u32::MAX;
+        let mut numbers = vec![UNNUMBERED; parents.len()];
+        let mut count = 0;
+        let mut of_triangle = Vec::with_capacity(self.triangles.len());
+        for &[a, ..] in &self.triangles {
+            let root = root(&mut parents, a) as usize;
+            if numbers[root] == UNNUMBERED {
+                numbers[root] = count;
+                count += 1;
+            }
+            of_triangle.push(numbers[root]);
+        }
+        Components { count: count as usize, of_triangle }
+    }
+
+    /// Vertices in use − edges + triangles: 2 for a sphere, 0 for a torus.
+    pub fn euler_characteristic(&self) -> i64 {
+        let mut is_used = vec![false; self.positions.len()];
+        self.triangles.iter().flatten().for_each(|&vertex| is_used[vertex as usize] = true);
+        let vertices = is_used.into_iter().filter(|&used| used).count();
+        vertices as i64 - Topology::of(self).edges.len() as i64 + self.triangles.len() as i64
+    }
+}
+
+/// Six times the volume, in units of the bounds' half-diagonal cubed, below which a mesh has no volume centroid. Larger,
+/// and thin sheets lose theirs; smaller, and the centroid of a flat mesh is rounding noise, outside of its bounds.
+const NO_VOLUME: f64 = 1e-12;
+
+/// Coordinates about the center of the bounds in units of a power of two near their size, so that products of three
+/// coordinates of a huge or tiny mesh neither overflow nor vanish. The scaling is exact.
+struct Frame {
+    center: DVec3,
+    scale: f64,
+}
+
+impl Frame {
+    fn of(mesh: &TriMesh) -> Self {
+        let bounds = mesh.bounds();
+        let center = 0.5 * bounds.min + 0.5 * bounds.max;
+        let reach = (0.5 * bounds.max - 0.5 * bounds.min).max_element();
+        if !(reach > 0.0 && reach.is_finite()) {
+            return Self { center: if center.is_finite() { center } else { DVec3::ZERO }, scale: 1.0 };
+        }
+        let (_, exponent) = libm::frexp(reach);
+        Self { center, scale: libm::ldexp(1.0, exponent.clamp(-1021, 1023)) }
+    }
+
+    fn local(&self, point: DVec3) -> DVec3 {
+        (point - self.center) / self.scale
+    }
+
+    fn world(&self, point: DVec3) -> DVec3 {
+        point * self.scale + self.center
+    }
+
+    fn world_volume(&self, volume: f64) -> f64 {
+        volume * self.scale * self.scale * self.scale
+    }
+}
+
+/// Angle between two directions, 0 to π, accurate for small angles too; zero where one has no length.
+pub(crate) fn angle_between(u: DVec3, v: DVec3) -> f64 {
+    libm::atan2(u.cross(v).length(), u.dot(v))
+}
+
+/// Representative of the set that holds `vertex`; halves the path on the way.
+fn root(parents: &mut [u32], mut vertex: u32) -> u32 {
+    while parents[vertex as usize] != vertex {
+        let grandparent = parents[parents[vertex as usize] as usize];
+        parents[vertex as usize] = grandparent;
+        vertex = grandparent;
+    }
+    vertex
+}
+
+fn unite(parents: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (root(parents, a), root(parents, b));
+    // The smaller index leads, whatever the order of the calls.
+    parents[a.max(b) as usize] = a.min(b);
+}

@@ -1,0 +1,94 @@
+//! Edges of a mesh, as flat arrays.
+
+use crate::TriMesh;
+
+/// Edges and the half-edges along them.
+///
+/// Half-edge `3 t + k` runs from vertex `k` to vertex `k + 1` (modulo three) of triangle `t`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Topology {
+    /// End vertices of each edge, the smaller first; edges in ascending order.
+    pub edges: Vec<[u32; 2]>,
+    /// The edge along each half-edge.
+    pub edge_of_half_edge: Vec<u32>,
+    /// Half-edges grouped by edge, ascending in each group.
+    half_edges: Vec<u32>,
+    /// Where each edge's group starts, and the end of the last.
+    starts: Vec<u32>,
+}
+
+impl Topology {
+    /// Edges of `mesh`. Takes time linear in the number of triangles: half-edges are bucketed by their smaller vertex.
+    ///
+    /// # Panics
+    /// If an index is out of range, or the mesh has more than 2³²/3 triangles.
+    pub fn of(mesh: &TriMesh) -> Self {
+        Self::of_triangles(&mesh.triangles, mesh.positions.len())
+    }
+
+    /// Edges of `triangles` over `vertices` vertices.
+    ///
+    /// # Panics
+    /// As [`of`](Self::of).
+    pub fn of_triangles(triangles: &[[u32; 3]], vertices: usize) -> Self {
+        assert!(triangles.len() <= u32::MAX as usize / 3, "half-edges are numbered in 32 bits");
+        let ends = |half_edge: u32| {
+            let triangle = triangles[half_edge as usize / 3];
+            let (from, to) = (triangle[half_edge as usize % 3], triangle[(half_edge as usize + 1) % 3]);
+            [from.min(to), from.max(to)]
+        };
+        let mut bucket_starts = vec![0_u32; vertices + 1];
+        let half_edge_count = 3 * triangles.len() as u32;
+        for half_edge in 0..half_edge_count {
+            bucket_starts[ends(half_edge)[0] as usize + 1] += 1;
+        }
+        for vertex in 0..vertices {
+            bucket_starts[vertex + 1] += bucket_starts[vertex];
+        }
+        let mut next = bucket_starts.clone();
+        let mut bucketed = vec![(0_u32, 0_u32); half_edge_count as usize];
+        for half_edge in 0..half_edge_count {
+            let [smaller, larger] = ends(half_edge);
+            let slot = &mut next[smaller as usize];
+            bucketed[*slot as usize] = (larger, half_edge);
+            *slot += 1;
+        }
+
+        let mut topology = Self {
+            edges: Vec::with_capacity(bucketed.len() / 2),
+            edge_of_half_edge: vec![0; bucketed.len()],
+            half_edges: Vec::with_capacity(bucketed.len()),
+            starts: Vec::with_capacity(bucketed.len() / 2 + 1),
+        };
+        for smaller in 0..vertices {
+            let bucket = &mut bucketed[bucket_starts[smaller] as usize..bucket_starts[smaller + 1] as usize];
+            bucket.sort_unstable();
+            for group in bucket.chunk_by(|a, b| a.0 == b.0) {
+                topology.starts.push(topology.half_edges.len() as u32);
+                for &(_, half_edge) in group {
+                    topology.edge_of_half_edge[half_edge as usize] = topology.edges.len() as u32;
+                    topology.half_edges.push(half_edge);
+                }
+                topology.edges.push([smaller as u32, group[0].0]);
+            }
+        }
+        topology.starts.push(half_edge_count);
+        topology
+    }
+
+    /// The half-edges along `edge`: one at a boundary, two inside a manifold surface.
+    ///
+    /// # Panics
+    /// If the edge does not exist.
+    pub fn half_edges(&self, edge: usize) -> &[u32] {
+        &self.half_edges[self.starts[edge] as usize..self.starts[edge + 1] as usize]
+    }
+
+    /// The three edges of `triangle`, the first from its first to its second vertex.
+    ///
+    /// # Panics
+    /// If the triangle does not exist.
+    pub fn triangle_edges(&self, triangle: usize) -> [u32; 3] {
+        std::array::from_fn(|side| self.edge_of_half_edge[3 * triangle + side])
+    }
+}
