@@ -1,1 +1,37 @@
 //! Divergence-free velocity fields of moving tools, their flows, and the deformation of meshes by them.
+//!
+//! Terms used throughout:
+//!
+//! - A [`Tool`] is a shape with a *support* around its surface; a [`Profile`] says how its field fades over the support.
+//! - A field is the curl of a *vector potential*, so it is divergence-free; its *flow map* keeps every volume.
+//! - A [`Stroke`] is one motion that deforms: a tool that moves, or a twist or bend of all space.
+//! - The *rest* of a mesh is the mesh as read, the *image* what the flow map makes of it. Between vertices the image of a
+//!   flat triangle is curved; the volume between it and the flat triangle that replaces it is the *facet error*.
+
+mod deform;
+mod facet_error;
+mod flow;
+#[cfg(test)]
+mod flux;
+mod lock;
+mod ordered_sum;
+mod pose;
+mod profile;
+mod receipt;
+mod refine;
+mod rigid_field;
+mod rk4;
+mod stroke;
+mod tessellation;
+mod tool;
+mod volume;
+
+pub use deform::{DeformError, DeformOptions, Deformed, deform};
+pub use flow::flow_points;
+pub use pose::{BodyTwist, Pose, rotation_from_vector};
+pub use profile::{Profile, UnknownProfile};
+pub use receipt::{Note, Receipt, StageSeconds, StrokeReceipt};
+pub use refine::RefineOptions;
+pub use rigid_field::{RigidField, VelocityBlock};
+pub use stroke::{Bend, Move, Stroke, StrokeError, Twist};
+pub use tool::{Tool, ToolError};

@@ -1,0 +1,177 @@
+//! The deformation of a mesh by strokes: advect, refine, lock.
+
+use std::time::Instant;
+
+use glam::DVec3;
+use isochore_mesh::{Cancelled, Monitor, TriMesh};
+
+use crate::{
+    Note, Receipt, RefineOptions, Stroke, StrokeReceipt,
+    lock::lock_volume,
+    refine::{Criteria, Refinement, refine, resolve_field},
+    tessellation::Tessellation,
+    volume::signed_volume,
+};
+
+/// How to deform.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DeformOptions {
+    /// When to split triangles; none to keep them as they are.
+    pub refine: Option<RefineOptions>,
+    /// Whether the exact final correction gives back the volume at rest.
+    pub lock: bool,
+}
+
+impl Default for DeformOptions {
+    fn default() -> Self {
+        Self { refine: Some(RefineOptions::default()), lock: true }
+    }
+}
+
+/// A deformed mesh.
+#[derive(Debug, Clone)]
+pub struct Deformed {
+    /// The mesh, refined and deformed.
+    pub mesh: TriMesh,
+    /// The same triangles at rest.
+    pub rest: TriMesh,
+    /// What was done.
+    pub receipt: Receipt,
+}
+
+/// Why a deformation gave nothing.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum DeformError {
+    /// The monitor stopped it.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A coordinate left the range of numbers.
+    #[error("vertex {vertex} is carried out of the range of numbers; coordinates or strokes are too large")]
+    Overflow {
+        /// Index of the vertex, inserted ones included.
+        vertex: usize,
+    },
+}
+
+/// A lock that moves a vertex by more than this share of the shortest edge at it may fold triangles. Larger stays silent when
+/// that happens; smaller cries over nothing.
+const NOTABLE_LOCK_SHIFT: f64 = 0.1;
+
+/// A facet error beyond this share of the volume is worth a note.
+const NOTABLE_FACET_ERROR: f64 = 5e-3;
+
+/// Deforms `mesh` by the strokes, one after the other.
+///
+/// Every vertex, inserted ones included, follows the flow from where it lies on the mesh as given. The flow keeps volumes up
+/// to the error of the time step (order four); flat triangles do up to the facet error, which refinement holds below
+/// [`RefineOptions::volume`] by an estimate; the lock gives back what is left. A volume is kept only where the mesh is closed,
+/// and self-intersections of the mesh as given stay.
+///
+/// The result has the same bits for any number of threads.
+///
+/// # Errors
+/// [`DeformError`].
+pub fn deform(
+    mesh: &TriMesh,
+    strokes: &[Stroke],
+    options: &DeformOptions,
+    monitor: &dyn Monitor,
+) -> Result<Deformed, DeformError> {
+    let volume_before = mesh.is_closed().then(|| signed_volume(&mesh.positions, &mesh.triangles));
+    let mut receipt = Receipt { volume_before, ..Receipt::default() };
+    let mut tessellation = Tessellation::new(mesh);
+    let criteria = options.refine.as_ref().map(|refine| Criteria::new(refine, &tessellation, volume_before));
+
+    let mut facet_error = 0.0;
+    for index in 0..strokes.len() {
+        facet_error = apply(&mut tessellation, &strokes[..=index], criteria.as_ref(), &mut receipt, monitor)?;
+    }
+    if let Some(vertex) = tessellation.image.iter().position(|image| !image.is_finite()) {
+        return Err(DeformError::Overflow { vertex });
+    }
+    receipt.moved_vertices = count_different(&tessellation.rest, &tessellation.image);
+    receipt.inserted_vertices = tessellation.rest.len() - mesh.positions.len();
+
+    let triangles = tessellation.indices();
+    if let Some(volume) = volume_before {
+        receipt.volume_before_lock = Some(signed_volume(&tessellation.image, &triangles));
+        receipt.facet_error = Some(facet_error);
+        if facet_error.abs() > NOTABLE_FACET_ERROR * volume.abs() {
+            receipt.notes.push(Note::FacetError { share: (facet_error / volume).abs() });
+        }
+    }
+    if options.lock {
+        lock(&mut tessellation, &triangles, &mut receipt);
+    }
+    receipt.volume_after = volume_before.map(|_| signed_volume(&tessellation.image, &triangles));
+    receipt.max_displacement =
+        tessellation.rest.iter().zip(&tessellation.image).map(|(rest, image)| rest.distance(*image)).fold(0.0, f64::max);
+
+    let (subdivision, image) = tessellation.into_subdivision();
+    let rest = TriMesh { positions: subdivision.positions.clone(), ..mesh.clone() };
+    let mesh = TriMesh { positions: image, ..rest.clone() };
+    Ok(Deformed { mesh, rest, receipt })
+}
+
+/// Carries the mesh through the last of `strokes`, refines it, and writes the stroke's receipt. Returns the facet error.
+fn apply(
+    mesh: &mut Tessellation,
+    strokes: &[Stroke],
+    criteria: Option<&Criteria>,
+    receipt: &mut Receipt,
+    monitor: &dyn Monitor,
+) -> Result<f64, Cancelled> {
+    let Some((stroke, past)) = strokes.split_last() else { return Ok(0.0) };
+    let begin = Instant::now();
+    let resolved = match criteria {
+        Some(criteria) => resolve_field(mesh, past, stroke, criteria, monitor)?,
+        None => Refinement::default(),
+    };
+    let resolve_end = Instant::now();
+    let before = mesh.image.clone();
+    let evaluations = mesh.advance(stroke, monitor)?;
+    let advect_end = Instant::now();
+    let moved = count_different(&before, &mesh.image);
+    drop(before);
+    let refined = refine(mesh, strokes, criteria, monitor)?;
+    let end = Instant::now();
+
+    receipt.seconds.advect += (advect_end - resolve_end).as_secs_f64();
+    receipt.seconds.refine += (resolve_end - begin + (end - advect_end)).as_secs_f64();
+    if let Some(criteria) = criteria.filter(|_| resolved.is_limited || refined.is_limited) {
+        receipt.notes.push(Note::TriangleLimit { stroke: past.len(), max_triangles: criteria.max_triangles() });
+    }
+    let volume_so_far: f64 = receipt.strokes.iter().filter_map(|stroke| stroke.volume_change).sum();
+    receipt.strokes.push(StrokeReceipt {
+        seconds: (end - begin).as_secs_f64(),
+        evaluations: resolved.evaluations + evaluations + refined.evaluations,
+        moved: moved + refined.inserted,
+        inserted: resolved.inserted + refined.inserted,
+        volume_change: receipt
+            .volume_before
+            .map(|volume| signed_volume(&mesh.image, &mesh.indices()) / volume - 1.0 - volume_so_far),
+    });
+    Ok(refined.facet_error)
+}
+
+fn lock(mesh: &mut Tessellation, triangles: &[[u32; 3]], receipt: &mut Receipt) {
+    let begin = Instant::now();
+    let note = match receipt.volume_before {
+        None => Some(Note::LockNeedsClosed),
+        Some(volume) => match lock_volume(&mesh.rest, &mut mesh.image, triangles, volume) {
+            None => Some(Note::LockSkipped),
+            Some(lock) => {
+                receipt.lock_max_shift = Some(lock.max_shift);
+                (lock.max_shift_per_edge > NOTABLE_LOCK_SHIFT)
+                    .then_some(Note::LockShift { ratio: lock.max_shift_per_edge })
+            }
+        },
+    };
+    receipt.notes.extend(note);
+    receipt.seconds.lock = begin.elapsed().as_secs_f64();
+}
+
+fn count_different(before: &[DVec3], after: &[DVec3]) -> usize {
+    let bits = |point: &DVec3| point.to_array().map(f64::to_bits);
+    before.iter().zip(after).filter(|(before, after)| bits(before) != bits(after)).count()
+}

@@ -1,0 +1,100 @@
+//! The receipt: what a deformation did, and what it could not do.
+
+use std::fmt;
+
+/// What a deformation did. Volumes are in cubic model units and stand only where the mesh is closed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Receipt {
+    /// Volume at rest.
+    pub volume_before: Option<f64>,
+    /// Volume of the flat triangles after all strokes, before the lock: what the bare method gives.
+    pub volume_before_lock: Option<f64>,
+    /// Volume in the end.
+    pub volume_after: Option<f64>,
+    /// Estimated signed volume that the flat triangles lack before the lock.
+    pub facet_error: Option<f64>,
+    /// Longest displacement by the lock, model units; none where there was no lock.
+    pub lock_max_shift: Option<f64>,
+    /// Longest displacement from rest to the end, model units.
+    pub max_displacement: f64,
+    /// Vertices, inserted ones included, whose coordinates differ in any bit from rest, before the lock.
+    pub moved_vertices: usize,
+    /// Vertices that refinement inserted.
+    pub inserted_vertices: usize,
+    /// The strokes, in order.
+    pub strokes: Vec<StrokeReceipt>,
+    /// Wall time of the stages.
+    pub seconds: StageSeconds,
+    /// What the user should know beside the figures.
+    pub notes: Vec<Note>,
+}
+
+/// What one stroke did.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StrokeReceipt {
+    /// Wall time, refinement included.
+    pub seconds: f64,
+    /// Evaluations of the fields, those for refinement included.
+    pub evaluations: u64,
+    /// Vertices that this stroke moved, inserted ones included.
+    pub moved: usize,
+    /// Vertices that refinement inserted for this stroke.
+    pub inserted: usize,
+    /// Signed change of the volume by this stroke, as a share of the volume at rest.
+    pub volume_change: Option<f64>,
+}
+
+/// Wall time of the stages of a deformation, in seconds.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct StageSeconds {
+    /// Carrying the vertices.
+    pub advect: f64,
+    /// Refinement, its own carrying of points included.
+    pub refine: f64,
+    /// The volume lock.
+    pub lock: f64,
+}
+
+/// Something the user should know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Note {
+    /// Refinement stopped at the limit on triangles.
+    TriangleLimit {
+        /// Index of the stroke, from 0.
+        stroke: usize,
+        /// The limit.
+        max_triangles: usize,
+    },
+    /// The flat triangles alone are off by a noticeable share of the volume.
+    FacetError {
+        /// Estimated share of the volume.
+        share: f64,
+    },
+    /// The lock had to move vertices by a noticeable part of the edges at them.
+    LockShift {
+        /// Largest ratio of a vertex' displacement to the shortest edge at it.
+        ratio: f64,
+    },
+    /// The lock was asked for and found nothing to hold: nothing had moved, or the displacement does not change the volume.
+    LockSkipped,
+    /// The lock was asked for, and the mesh is open.
+    LockNeedsClosed,
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TriangleLimit { stroke, max_triangles } => {
+                write!(f, "refinement of stroke {stroke} stopped at the limit of {max_triangles} triangles")
+            }
+            Self::FacetError { share } => {
+                write!(f, "the flat triangles alone are off by {:.3} % of the volume; refine more", 100.0 * share)
+            }
+            Self::LockShift { ratio } => {
+                write!(f, "the lock moved a vertex by {ratio:.2} of the shortest edge at it; refine more before locking")
+            }
+            Self::LockSkipped => f.write_str("the lock was skipped: the displacement has no hold on the volume"),
+            Self::LockNeedsClosed => f.write_str("the lock was skipped: the mesh is open and has no volume"),
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! Refinement: splits the mesh at rest until its flat triangles stand for the curved image well enough.
+//!
+//! Three things split an edge: the image of its midpoint lies far from the middle of its ends; its image is long; or its
+//! triangle holds so much of the volume between flat and curved that the whole would miss the volume asked for.
+
+use isochore_mesh::{Aabb, Cancelled, Monitor};
+use rayon::prelude::*;
+
+use crate::{
+    Stroke,
+    facet_error::{SHARE_SEEN, edge_lengths},
+    ordered_sum::ordered_sum,
+    tessellation::Tessellation,
+};
+
+/// When to split.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RefineOptions {
+    /// Share of the mesh's volume at which the estimated facet error may stand. Open meshes have no volume and ignore it.
+    pub volume: f64,
+    /// Distance from an edge's image to the image of its midpoint that splits it, as a share of the longest side of the mesh's
+    /// bounding box.
+    pub deviation: f64,
+    /// Length of an edge's image, in model units, that splits it; by default one and a half times the longest edge at rest.
+    pub max_edge: Option<f64>,
+    /// No split goes beyond this number of triangles.
+    pub max_triangles: usize,
+}
+
+impl Default for RefineOptions {
+    fn default() -> Self {
+        Self { volume: 1e-4, deviation: 1e-3, max_edge: None, max_triangles: 2_000_000 }
+    }
+}
+
+/// The criteria in model units.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Criteria {
+    volume: f64,
+    deviation: f64,
+    max_edge: f64,
+    max_triangles: usize,
+}
+
+/// What the passes over one stroke have done.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Refinement {
+    /// Vertices inserted.
+    pub(crate) inserted: usize,
+    /// Evaluations of the fields.
+    pub(crate) evaluations: u64,
+    /// Estimated signed volume between the flat triangles that are left and the curved image: what the flat ones lack.
+    pub(crate) facet_error: f64,
+    /// Whether the limit on triangles ended it.
+    pub(crate) is_limited: bool,
+}
+
+/// A round divides what it splits by two, so this many divide any edge of a representable mesh down to rounding; it only ends
+/// what a defect would keep going.
+const MAX_ROUNDS: usize = 40;
+
+/// A round aims at this share of the volume error allowed, so that what it leaves, being re-estimated on finer triangles, does
+/// not call for one more round that splits a handful. Larger takes more rounds; smaller splits more than asked.
+const AIM: f64 = 0.5;
+
+/// No round tries to leave less than this share of the error it found: splitting everything leaves a quarter of it, and the
+/// last triangles before that bring next to nothing.
+const LEAST_LEFT: f64 = 1.0 / 3.0;
+
+/// Edges of a triangle that is split for its volume, whose midpoint lies this share of the largest off its plane, are split.
+/// Larger splits one edge a triangle and makes slivers; smaller splits flat directions of cylinders.
+const SIGNIFICANT: f64 = 0.5;
+
+impl Criteria {
+    /// No split goes beyond this number of triangles.
+    pub(crate) fn max_triangles(&self) -> usize {
+        self.max_triangles
+    }
+
+    /// The criteria for a mesh with the `image` it now has; `volume` is that of the closed mesh at rest, none of an open one.
+    pub(crate) fn new(options: &RefineOptions, mesh: &Tessellation, volume: Option<f64>) -> Self {
+        let longest = || (0..mesh.triangles.len()).flat_map(|index| edge_lengths(&mesh.image_of(index))).fold(0.0, f64::max);
+        Self {
+            volume: volume.map_or(f64::INFINITY, |volume| options.volume * volume.abs()),
+            deviation: options.deviation * Aabb::of(mesh.rest.iter().copied()).size().max_element(),
+            max_edge: options.max_edge.unwrap_or_else(|| 1.5 * longest()),
+            max_triangles: options.max_triangles,
+        }
+    }
+}
+
+/// Splits triangles in the way of `stroke`, before it acts, until its field cannot slip through between their vertices.
+pub(crate) fn resolve_field(
+    mesh: &mut Tessellation,
+    past: &[Stroke],
+    stroke: &Stroke,
+    criteria: &Criteria,
+    monitor: &dyn Monitor,
+) -> Result<Refinement, Cancelled> {
+    let mut refinement = Refinement::default();
+    let coarse = stroke.feature_size();
+    if coarse == f64::INFINITY {
+        return Ok(refinement);
+    }
+    for _ in 0..MAX_ROUNDS {
+        monitor.check("refine", 0.0)?;
+        let is_coarse: Vec<bool> = (0..mesh.triangles.len())
+            .into_par_iter()
+            .map(|index| {
+                let corners = mesh.image_of(index);
+                let longest = edge_lengths(&corners).into_iter().fold(0.0, f64::max);
+                let center = (corners[0] + corners[1] + corners[2]) / 3.0;
+                let radius = corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max);
+                longest > coarse && stroke.may_touch(center, radius)
+            })
+            .collect();
+        if !is_coarse.contains(&true) {
+            break;
+        }
+        refinement.evaluations += mesh.track(past, |_, index| is_coarse[index], monitor)?;
+        let mut is_split = vec![false; mesh.midpoint_count()];
+        for index in (0..mesh.triangles.len()).filter(|&index| is_coarse[index]) {
+            let Some(midpoints) = mesh.midpoints_of(index) else { continue };
+            for (midpoint, length) in midpoints.into_iter().zip(edge_lengths(&mesh.image_of(index))) {
+                is_split[midpoint as usize] |= length > coarse;
+            }
+        }
+        if mesh.triangles_after(&is_split) > criteria.max_triangles {
+            refinement.is_limited = true;
+            break;
+        }
+        refinement.inserted += mesh.split(&is_split);
+    }
+    Ok(refinement)
+}
+
+/// Splits until the image under `strokes`, the last of which has just acted, meets the criteria; without criteria only
+/// estimates the facet error.
+pub(crate) fn refine(
+    mesh: &mut Tessellation,
+    strokes: &[Stroke],
+    criteria: Option<&Criteria>,
+    monitor: &dyn Monitor,
+) -> Result<Refinement, Cancelled> {
+    let mut refinement = Refinement::default();
+    for round in 0..MAX_ROUNDS {
+        monitor.check("refine", round as f64 / MAX_ROUNDS as f64)?;
+        refinement.evaluations += mesh.track(strokes, has_moved, monitor)?;
+        let gains: Vec<f64> = (0..mesh.triangles.len())
+            .into_par_iter()
+            .map(|index| mesh.curved(index).map_or(0.0, |curved| curved.volume_gain()))
+            .collect();
+        refinement.facet_error = ordered_sum(gains.len(), |index| [gains[index]])[0] / SHARE_SEEN;
+        let Some(criteria) = criteria else { break };
+
+        let is_split = edges_to_split(mesh, criteria, &gains, refinement.facet_error);
+        if !is_split.contains(&true) {
+            break;
+        }
+        if mesh.triangles_after(&is_split) > criteria.max_triangles {
+            refinement.is_limited = true;
+            break;
+        }
+        refinement.inserted += mesh.split(&is_split);
+    }
+    Ok(refinement)
+}
+
+fn has_moved(mesh: &Tessellation, triangle: usize) -> bool {
+    mesh.triangles[triangle].vertices.iter().any(|&vertex| mesh.image[vertex as usize] != mesh.rest[vertex as usize])
+}
+
+/// By number of midpoint, whether its edge is to be split.
+fn edges_to_split(mesh: &Tessellation, criteria: &Criteria, gains: &[f64], facet_error: f64) -> Vec<bool> {
+    let mut is_split = vec![false; mesh.midpoint_count()];
+    for index in 0..mesh.triangles.len() {
+        let (Some(curved), Some(midpoints)) = (mesh.curved(index), mesh.midpoints_of(index)) else { continue };
+        let (deviations, lengths) = (curved.deviations(), curved.lengths());
+        for edge in 0..3 {
+            is_split[midpoints[edge] as usize] |=
+                deviations[edge].length() > criteria.deviation || lengths[edge] > criteria.max_edge;
+        }
+    }
+    for index in triangles_to_split(gains, facet_error, criteria.volume) {
+        let (Some(curved), Some(midpoints)) = (mesh.curved(index), mesh.midpoints_of(index)) else { continue };
+        let normal = curved.normal();
+        let heights = curved.deviations().map(|deviation| deviation.dot(normal).abs());
+        let least = SIGNIFICANT * heights.into_iter().fold(0.0, f64::max);
+        for edge in 0..3 {
+            is_split[midpoints[edge] as usize] |= heights[edge] >= least;
+        }
+    }
+    is_split
+}
+
+/// The fewest triangles, by their share of the facet error, whose split should bring it well below what is `allowed`.
+fn triangles_to_split(gains: &[f64], facet_error: f64, allowed: f64) -> Vec<usize> {
+    if facet_error.abs() <= allowed {
+        return Vec::new();
+    }
+    let goal = (AIM * allowed).max(LEAST_LEFT * facet_error.abs());
+    let mut order: Vec<usize> = (0..gains.len()).filter(|&index| gains[index] != 0.0).collect();
+    order.par_sort_unstable_by(|&a, &b| gains[b].abs().total_cmp(&gains[a].abs()).then(a.cmp(&b)));
+    let mut left = facet_error;
+    let enough = order.iter().position(|&index| {
+        left -= gains[index];
+        left.abs() <= goal
+    });
+    order.truncate(enough.map_or(order.len(), |last| last + 1));
+    order
+}

@@ -1,0 +1,102 @@
+//! The one kernel: the divergence-free field of a rigidly moving tool.
+//!
+//! ```text
+//! V = curl(g(d/R) A) = g (v + ω×r) + (g′/R) n × A,   A = ½ v×r + ⅓ (ω×r)×r
+//! ```
+//!
+//! d is the signed distance, n its gradient, R the support, g the profile, v the velocity of the tool's center, ω its angular
+//! velocity and r the position relative to the center. Where g is one the field is the tool's rigid motion; beyond the support
+//! it is zero; and being a curl it is divergence-free in between, whatever the shape. Only d and n are needed, and n must be
+//! the gradient of the very function that gives d: with any other gradient the field is no curl.
+//!
+//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, equations 12.2 (ω = 0) and 12.3 (v = 0), with the
+//! factors −1/(2R²) and −1/(3R²) that make the tool's own speed that of its surface.
+
+use glam::DVec3;
+use isochore_mesh::{DistanceBlock, LANES, PointBlock};
+
+use crate::{BodyTwist, Tool};
+
+/// The field of a tool that moves with a twist, in tool coordinates, where it does not change with time.
+#[derive(Debug, Clone, Copy)]
+pub struct RigidField<'a> {
+    tool: &'a Tool,
+    twist: BodyTwist,
+}
+
+/// The field at the points of a block.
+#[derive(Debug, Clone, Copy)]
+pub struct VelocityBlock {
+    /// Velocity past the tool, V − (v + ω×y), in tool axes: what a point's tool coordinates change by.
+    pub relative: PointBlock,
+    /// Signed distance from the tool.
+    pub distance: [f64; LANES],
+    /// Whether the point is beyond the support, where the field is exactly zero.
+    pub is_outside: [bool; LANES],
+}
+
+impl VelocityBlock {
+    pub(crate) const REST: Self =
+        Self { relative: PointBlock::ZERO, distance: [f64::INFINITY; LANES], is_outside: [true; LANES] };
+}
+
+impl<'a> RigidField<'a> {
+    /// The field of `tool` as it moves with `twist`.
+    pub fn new(tool: &'a Tool, twist: BodyTwist) -> Self {
+        Self { tool, twist }
+    }
+
+    /// The tool that moves.
+    pub fn tool(&self) -> &'a Tool {
+        self.tool
+    }
+
+    /// The field at `points`, given in tool coordinates.
+    ///
+    /// In the rigid core the relative velocity is exactly zero.
+    pub fn evaluate_into(&self, points: &PointBlock, out: &mut VelocityBlock) {
+        let mut distance = DistanceBlock::FAR;
+        self.tool.distance().sample_into(points, &mut distance);
+        let support = self.tool.support();
+        let profile = self.tool.profile().evaluate_block(&distance.value, support);
+
+        let center = self.tool.center();
+        let velocity = self.twist.velocity(center);
+        let angular = self.twist.angular;
+        let normal = &distance.gradient;
+        for lane in 0..LANES {
+            let (rx, ry, rz) = (points.x[lane] - center.x, points.y[lane] - center.y, points.z[lane] - center.z);
+            let turn_x = angular.y * rz - angular.z * ry;
+            let turn_y = angular.z * rx - angular.x * rz;
+            let turn_z = angular.x * ry - angular.y * rx;
+            // A = (½ v + ⅓ ω×r) × r
+            let half_x = 0.5 * velocity.x + turn_x / 3.0;
+            let half_y = 0.5 * velocity.y + turn_y / 3.0;
+            let half_z = 0.5 * velocity.z + turn_z / 3.0;
+            let potential_x = half_y * rz - half_z * ry;
+            let potential_y = half_z * rx - half_x * rz;
+            let potential_z = half_x * ry - half_y * rx;
+            // V − (v + ω×r) = (g − 1)(v + ω×r) + (g′/R) n×A
+            let lag = profile.value[lane] - 1.0;
+            let slope = profile.slope[lane] / support;
+            let (nx, ny, nz) = (slope * normal.x[lane], slope * normal.y[lane], slope * normal.z[lane]);
+            out.relative.x[lane] = lag * (velocity.x + turn_x) + (ny * potential_z - nz * potential_y);
+            out.relative.y[lane] = lag * (velocity.y + turn_y) + (nz * potential_x - nx * potential_z);
+            out.relative.z[lane] = lag * (velocity.z + turn_z) + (nx * potential_y - ny * potential_x);
+        }
+        out.distance = distance.value;
+        for lane in 0..LANES {
+            out.is_outside[lane] = profile.value[lane] == 0.0 && profile.slope[lane] == 0.0;
+        }
+    }
+
+    /// The velocity V at one point, in tool coordinates and tool axes.
+    pub fn velocity(&self, point: DVec3) -> DVec3 {
+        let mut block = VelocityBlock::REST;
+        self.evaluate_into(&PointBlock::splat(point), &mut block);
+        if block.is_outside[0] { DVec3::ZERO } else { block.relative.get(0) + self.twist.velocity(point) }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,93 @@
+//! Strokes: the motions that deform, each the exact or integrated flow of a divergence-free field.
+
+mod bend;
+mod movement;
+mod rotation;
+mod twist;
+
+use glam::DVec3;
+
+pub use bend::Bend;
+pub use movement::Move;
+pub use twist::Twist;
+
+/// One motion that deforms what it passes through.
+#[derive(Debug, Clone)]
+pub enum Stroke {
+    /// A tool moves rigidly from pose to pose.
+    Move(Move),
+    /// Planes across an axis turn about it, by an angle proportional to the distance along it.
+    Twist(Twist),
+    /// Spheres turn about an axis, by an angle proportional to the squared radius.
+    Bend(Bend),
+}
+
+impl Stroke {
+    /// Carries `points` through the whole stroke and returns how many times the field was evaluated.
+    ///
+    /// Each point's way depends on that point alone: the bits do not depend on its neighbors in the slice.
+    pub(crate) fn advance(&self, points: &mut [DVec3]) -> u64 {
+        match self {
+            Self::Move(stroke) => stroke.advance(points),
+            Self::Twist(stroke) => stroke.advance(points),
+            Self::Bend(stroke) => stroke.advance(points),
+        }
+    }
+
+    /// Whether the stroke may move a point of this ball; false is certain.
+    pub(crate) fn may_touch(&self, center: DVec3, radius: f64) -> bool {
+        match self {
+            Self::Move(stroke) => stroke.may_touch(center, radius),
+            Self::Twist(_) | Self::Bend(_) => true,
+        }
+    }
+
+    /// Length over which the field changes where it has one: surface coarser than this can miss it.
+    pub(crate) fn feature_size(&self) -> f64 {
+        match self {
+            Self::Move(stroke) => stroke.tool().feature_size(),
+            Self::Twist(_) | Self::Bend(_) => f64::INFINITY,
+        }
+    }
+
+    /// The first part of the stroke, `fraction` of its time, from 0 to 1.
+    pub fn truncated(&self, fraction: f64) -> Self {
+        let fraction = fraction.clamp(0.0, 1.0);
+        match self {
+            Self::Move(stroke) => Self::Move(stroke.truncated(fraction)),
+            Self::Twist(stroke) => Self::Twist(stroke.truncated(fraction)),
+            Self::Bend(stroke) => Self::Bend(stroke.truncated(fraction)),
+        }
+    }
+}
+
+/// Why a stroke cannot be.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StrokeError {
+    /// A path needs two poses at least.
+    #[error("the path needs at least two keys, not {0}")]
+    TooFewKeys(usize),
+    /// Two keys half a turn apart.
+    #[error("keys {key} and {} are exactly 180° apart, so that the way to turn is open; put a key between them", .key + 1)]
+    HalfTurn {
+        /// Index of the first of the two, from 0.
+        key: usize,
+    },
+    /// The step is not a positive fraction.
+    #[error("the step must be a positive fraction, not {0}")]
+    Step(f64),
+    /// The path is so long for its step that it would not end.
+    #[error("the way from key {key} takes {steps:.0} steps; at most {} are allowed", movement::MAX_STEPS)]
+    TooManySteps {
+        /// Index of the key at the start of the way, from 0.
+        key: usize,
+        /// Steps it would take.
+        steps: f64,
+    },
+    /// The axis has no direction.
+    #[error("the axis must have a length")]
+    ZeroAxis,
+    /// A number is infinite or not a number.
+    #[error("{0} must be finite")]
+    NotFinite(&'static str),
+}

@@ -1,0 +1,273 @@
+//! A tool that moves rigidly from pose to pose, and the flow of its field.
+//!
+//! Between neighboring keys the tool moves with a constant body twist, so that in tool coordinates y the field stands still
+//! and a point follows the autonomous ẏ = V(y) − (v + ω×y), which is integrated by Runge-Kutta steps of equal length. A point
+//! whose four stages all lie beyond the support rests: its world coordinates keep their bits through that step. Sleeping only
+//! skips steps through which a point is certain to rest, so it changes no bit.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use isochore_mesh::{Aabb, LANES, PointBlock};
+
+use super::StrokeError;
+use crate::{
+    BodyTwist, Pose, RigidField, Tool,
+    pose::Placement,
+    rigid_field::VelocityBlock,
+    rk4::rk4_step,
+};
+
+/// Steps between two keys at most: more is a mistake in the recipe, and the table of poses must fit in memory.
+pub(super) const MAX_STEPS: usize = 1_000_000;
+
+/// Clearance that is given away to rounding when a point goes to sleep, as a share of the coordinates at hand.
+/// Larger wakes points needlessly early; smaller than some units of f64 rounding could let a sleeping point miss the support.
+const SLEEP_SLACK: f64 = 1e-12;
+
+/// A tool's way through a list of poses.
+#[derive(Debug, Clone)]
+pub struct Move {
+    tool: Arc<Tool>,
+    keys: Vec<Pose>,
+    step: f64,
+    segments: Vec<Segment>,
+}
+
+/// The way between two neighboring keys, one unit of time long.
+#[derive(Debug, Clone)]
+struct Segment {
+    twist: BodyTwist,
+    /// Where the tool is at the beginning of each step and at the end of the last.
+    placements: Vec<Placement>,
+    /// Upper bound on the speed of every point of the support.
+    speed: f64,
+}
+
+impl Move {
+    /// The way of `tool` through `keys` (world from tool), with constant body twist between neighbors: a screw of less than
+    /// half a turn.
+    ///
+    /// `step` bounds the travel of the tool's fastest surface point in one step of the integrator, as a fraction of the
+    /// [feature size](Tool::feature_size).
+    ///
+    /// # Errors
+    /// [`StrokeError`]: fewer than two keys, neighbors exactly half a turn apart, a step that is no positive fraction, a way
+    /// of too many steps, a number that is not finite.
+    pub fn new(tool: Arc<Tool>, keys: Vec<Pose>, step: f64) -> Result<Self, StrokeError> {
+        if !(step > 0.0 && step.is_finite()) {
+            return Err(StrokeError::Step(step));
+        }
+        if keys.len() < 2 {
+            return Err(StrokeError::TooFewKeys(keys.len()));
+        }
+        if keys.iter().any(|key| !(key.translation.is_finite() && key.rotation.is_finite())) {
+            return Err(StrokeError::NotFinite("the poses of the path"));
+        }
+        let segments = (0..keys.len() - 1).map(|key| Segment::new(&tool, &keys, key, step)).collect::<Result<_, _>>()?;
+        Ok(Self { tool, keys, step, segments })
+    }
+
+    /// The tool that moves.
+    pub fn tool(&self) -> &Tool {
+        &self.tool
+    }
+
+    /// Steps of the integrator along the whole way.
+    pub fn steps(&self) -> usize {
+        self.segments.iter().map(Segment::steps).sum()
+    }
+
+    pub(super) fn advance(&self, points: &mut [DVec3]) -> u64 {
+        let mut travelers = Travelers::new(points);
+        self.segments.iter().map(|segment| segment.advance(&self.tool, &mut travelers)).sum()
+    }
+
+    /// Whether the support may touch the ball, as it stands, at any time; false is certain.
+    pub(super) fn may_touch(&self, center: DVec3, radius: f64) -> bool {
+        self.segments.iter().any(|segment| segment.may_touch(&self.tool, center, radius))
+    }
+
+    pub(super) fn truncated(&self, fraction: f64) -> Self {
+        let time = fraction * self.segments.len() as f64;
+        let whole = (time as usize).min(self.segments.len() - 1);
+        let mut keys = self.keys[..=whole].to_vec();
+        keys.push(self.keys[whole].moved(&self.segments[whole].twist, time - whole as f64));
+        // A part of a legal way is legal: shorter, and turned by less.
+        Self::new(self.tool.clone(), keys, self.step).unwrap_or_else(|_| self.clone())
+    }
+}
+
+impl Segment {
+    fn new(tool: &Tool, keys: &[Pose], key: usize, step: f64) -> Result<Self, StrokeError> {
+        let [start, end] = [&keys[key], &keys[key + 1]];
+        let twist = start.twist_to(end).ok_or(StrokeError::HalfTurn { key })?;
+        let travel = top_speed(&twist, tool.distance().bounds());
+        let count = (travel / (step * tool.feature_size())).ceil().max(1.0);
+        if count.is_nan() || count > MAX_STEPS as f64 {
+            return Err(StrokeError::TooManySteps { key, steps: count });
+        }
+        let steps = count as usize;
+        let mut placements: Vec<Placement> = (0..steps)
+            .map(|index| Placement::from(&start.moved(&twist, index as f64 / steps as f64)))
+            .collect();
+        placements.push(Placement::from(end));
+        Ok(Self { twist, placements, speed: top_speed(&twist, tool.support_bounds()) })
+    }
+
+    fn steps(&self) -> usize {
+        self.placements.len() - 1
+    }
+
+    /// Length of a step, as a share of the segment's time.
+    fn step_time(&self) -> f64 {
+        1.0 / self.steps() as f64
+    }
+
+    fn advance(&self, tool: &Tool, travelers: &mut Travelers<'_>) -> u64 {
+        let field = RigidField::new(tool, self.twist);
+        let bounds = tool.support_bounds();
+        let mut evaluations = 0;
+        travelers.wake.fill(0);
+        let mut due = Vec::new();
+        for step in 0..self.steps() {
+            due.clear();
+            for index in 0..travelers.world.len() {
+                if travelers.is_moving[index] {
+                    due.push(index as u32);
+                } else if travelers.wake[index] <= step {
+                    let local = self.placements[step].to_local(travelers.world[index]);
+                    let sleep = self.resting_steps(bounds.distance(local), local);
+                    if sleep > 0 {
+                        travelers.wake[index] = step + sleep;
+                    } else {
+                        travelers.local[index] = local;
+                        due.push(index as u32);
+                    }
+                }
+            }
+            for block in due.chunks(LANES) {
+                evaluations += self.step_block(&field, step, block, travelers);
+            }
+        }
+        for index in 0..travelers.world.len() {
+            if travelers.is_moving[index] {
+                travelers.world[index] = self.placements[self.steps()].to_world(travelers.local[index]);
+                travelers.is_moving[index] = false;
+            }
+        }
+        evaluations
+    }
+
+    /// Takes the travelers named in `block`, whose local positions are those at the beginning of `step`, to its end.
+    fn step_block(&self, field: &RigidField<'_>, step: usize, block: &[u32], travelers: &mut Travelers<'_>) -> u64 {
+        let mut start = PointBlock::ZERO;
+        for lane in 0..LANES {
+            // Lanes beyond the block repeat its last point, and nobody reads them.
+            start.set(lane, travelers.local[block[lane.min(block.len() - 1)] as usize]);
+        }
+        let mut velocity = VelocityBlock::REST;
+        field.evaluate_into(&start, &mut velocity);
+        let tool = field.tool();
+        let mut sleep = [0; LANES];
+        for lane in 0..block.len() {
+            if velocity.is_outside[lane] && velocity.distance[lane].is_finite() {
+                let clearance = (velocity.distance[lane] - tool.support()) / tool.distance().lipschitz();
+                sleep[lane] = self.resting_steps(clearance, start.get(lane));
+            }
+        }
+        if sleep[..block.len()].iter().all(|&steps| steps > 0) {
+            for (lane, &index) in block.iter().enumerate() {
+                travelers.rest(index as usize, &self.placements[step], step + sleep[lane]);
+            }
+            return block.len() as u64;
+        }
+        let mut is_still = velocity.is_outside;
+        let first = velocity.relative;
+        let end = rk4_step(&start, &first, self.step_time(), |points, out| {
+            field.evaluate_into(points, &mut velocity);
+            for lane in 0..LANES {
+                is_still[lane] &= velocity.is_outside[lane];
+            }
+            *out = velocity.relative;
+        });
+        for (lane, &index) in block.iter().enumerate() {
+            let index = index as usize;
+            if is_still[lane] {
+                travelers.rest(index, &self.placements[step], step + sleep[lane].max(1));
+            } else {
+                travelers.local[index] = end.get(lane);
+                travelers.is_moving[index] = true;
+            }
+        }
+        4 * block.len() as u64
+    }
+
+    /// Number of steps through which a point at rest, now at `local` and at least `clearance` away from the support, is certain
+    /// to have all four Runge-Kutta stages beyond the support.
+    ///
+    /// In the world the support comes closer by at most speed × time. The stages follow the point's circle in tool
+    /// coordinates along tangents: off by less than (step time)² |ω| |v + ω×y|, where |v + ω×y| does not change along the way.
+    fn resting_steps(&self, clearance: f64, local: DVec3) -> usize {
+        let time = self.step_time();
+        let stage_error = time * time * self.twist.angular.length() * self.twist.velocity(local).length();
+        let slack = SLEEP_SLACK * (local.abs().max_element() + clearance);
+        let steps = (clearance - stage_error - slack) / (self.speed * time);
+        // A tool that stands still comes no closer: 0/0 and 1/0 both mean all remaining steps, or none when in reach.
+        if steps >= 1.0 { (steps as usize).min(self.steps()) } else { 0 }
+    }
+
+    fn may_touch(&self, tool: &Tool, center: DVec3, radius: f64) -> bool {
+        let bounds = tool.support_bounds();
+        let mut step = 0;
+        while step <= self.steps() {
+            let local = self.placements[step].to_local(center);
+            let mut clearance = bounds.distance(local) - radius;
+            if clearance <= 0.0 {
+                let (distance, _) = tool.distance().sample(local);
+                if distance.is_finite() {
+                    clearance = (distance - tool.support()) / tool.distance().lipschitz() - radius;
+                }
+            }
+            // Between this step and the next the support comes closer by at most this.
+            if clearance <= self.speed * self.step_time() {
+                return true;
+            }
+            step += self.resting_steps(clearance, local).max(1);
+        }
+        false
+    }
+}
+
+/// Points on their way through a segment: resting in the world, or moving in tool coordinates.
+struct Travelers<'a> {
+    world: &'a mut [DVec3],
+    local: Vec<DVec3>,
+    is_moving: Vec<bool>,
+    /// First step at which a resting point must be looked at again.
+    wake: Vec<usize>,
+}
+
+impl<'a> Travelers<'a> {
+    fn new(world: &'a mut [DVec3]) -> Self {
+        let count = world.len();
+        Self { world, local: vec![DVec3::ZERO; count], is_moving: vec![false; count], wake: vec![0; count] }
+    }
+
+    /// Lets a point rest where it is at the beginning of the step with this placement.
+    fn rest(&mut self, index: usize, placement: &Placement, wake: usize) {
+        if self.is_moving[index] {
+            self.world[index] = placement.to_world(self.local[index]);
+            self.is_moving[index] = false;
+        }
+        self.wake[index] = wake;
+    }
+}
+
+/// Upper bound on the speed of the points of a box: a convex function, so the largest of its corners'.
+fn top_speed(twist: &BodyTwist, bounds: Aabb) -> f64 {
+    bounds.corners().into_iter().map(|corner| twist.velocity(corner).length()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests;

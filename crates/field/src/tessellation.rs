@@ -1,0 +1,231 @@
+//! A mesh at rest and its image under the flow, split together.
+//!
+//! A vertex that is inserted lies in the middle of an edge of the mesh at rest, and its image is where the flow carries that
+//! point, never the middle of the images: that is what brings the surface closer to the true image.
+
+use glam::DVec3;
+use isochore_mesh::{Cancelled, Monitor, SubTriangle, Subdivision, TriMesh};
+use rustc_hash::FxHashMap;
+
+use crate::{Stroke, flow};
+
+/// The edge's midpoint is not followed.
+const UNTRACKED: u32 = u32::MAX;
+
+/// A mesh at rest, its image, and the midpoints of those edges that are followed through the flow.
+#[derive(Debug, Clone)]
+pub(crate) struct Tessellation {
+    pub(crate) rest: Vec<DVec3>,
+    pub(crate) image: Vec<DVec3>,
+    pub(crate) triangles: Vec<SubTriangle>,
+    /// For each triangle the midpoints of its edges 01, 12 and 20.
+    midpoints_of: Vec<[u32; 3]>,
+    midpoints: Midpoints,
+}
+
+/// Midpoints of edges at rest, and their images.
+#[derive(Debug, Clone, Default)]
+struct Midpoints {
+    of_edge: FxHashMap<[u32; 2], u32>,
+    rest: Vec<DVec3>,
+    image: Vec<DVec3>,
+}
+
+/// A triangle's image together with the images of its edges' midpoints.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CurvedTriangle {
+    /// Images of the corners.
+    pub(crate) corners: [DVec3; 3],
+    /// Images of the midpoints of the edges 01, 12 and 20.
+    pub(crate) midpoints: [DVec3; 3],
+}
+
+impl Tessellation {
+    /// The triangles of `mesh` as they are, at rest.
+    pub(crate) fn new(mesh: &TriMesh) -> Self {
+        let triangles: Vec<SubTriangle> = (0u32..)
+            .zip(&mesh.triangles)
+            .map(|(parent, &vertices)| SubTriangle { vertices, parent, corners: [DVec3::X, DVec3::Y, DVec3::Z] })
+            .collect();
+        Self {
+            rest: mesh.positions.clone(),
+            image: mesh.positions.clone(),
+            midpoints_of: vec![[UNTRACKED; 3]; triangles.len()],
+            triangles,
+            midpoints: Midpoints::default(),
+        }
+    }
+
+    /// Vertex indices of all triangles.
+    pub(crate) fn indices(&self) -> Vec<[u32; 3]> {
+        self.triangles.iter().map(|triangle| triangle.vertices).collect()
+    }
+
+    /// The rest surface, as finely split as this.
+    pub(crate) fn into_subdivision(self) -> (Subdivision, Vec<DVec3>) {
+        (Subdivision { positions: self.rest, triangles: self.triangles }, self.image)
+    }
+
+    /// Carries all images through one more stroke; returns the evaluations of the field.
+    pub(crate) fn advance(&mut self, stroke: &Stroke, monitor: &dyn Monitor) -> Result<u64, Cancelled> {
+        let stroke = std::slice::from_ref(stroke);
+        Ok(flow::advance(&mut self.image, stroke, monitor)? + flow::advance(&mut self.midpoints.image, stroke, monitor)?)
+    }
+
+    /// From now on follows the edge midpoints of every triangle for which `is_wanted`, carried through the `strokes` so far.
+    /// Returns the evaluations of the fields.
+    pub(crate) fn track(
+        &mut self,
+        strokes: &[Stroke],
+        is_wanted: impl Fn(&Self, usize) -> bool,
+        monitor: &dyn Monitor,
+    ) -> Result<u64, Cancelled> {
+        let known = self.midpoints.rest.len();
+        let mut is_tracked_vertex = vec![false; self.rest.len()];
+        for index in 0..self.triangles.len() {
+            let vertices = self.triangles[index].vertices;
+            if self.midpoints_of[index].contains(&UNTRACKED) && is_wanted(self, index) {
+                self.midpoints_of[index] = edges(vertices).map(|edge| self.midpoints.find_or_insert(edge, &self.rest));
+            }
+            if !self.midpoints_of[index].contains(&UNTRACKED) {
+                vertices.map(|vertex| is_tracked_vertex[vertex as usize] = true);
+            }
+        }
+        // Both sides of an edge must know its midpoint, or splitting one would tear the surface.
+        for (triangle, midpoints) in self.triangles.iter().zip(&mut self.midpoints_of) {
+            for (edge, midpoint) in edges(triangle.vertices).into_iter().zip(midpoints) {
+                if *midpoint == UNTRACKED && edge.iter().all(|&vertex| is_tracked_vertex[vertex as usize]) {
+                    *midpoint = self.midpoints.find(edge).unwrap_or(UNTRACKED);
+                }
+            }
+        }
+        self.midpoints.image.extend_from_slice(&self.midpoints.rest[known..]);
+        flow::advance(&mut self.midpoints.image[known..], strokes, monitor)
+    }
+
+    /// The number of midpoints that are or were followed; they are numbered below this.
+    pub(crate) fn midpoint_count(&self) -> usize {
+        self.midpoints.rest.len()
+    }
+
+    /// The midpoints of a triangle's edges 01, 12 and 20, if all are followed.
+    pub(crate) fn midpoints_of(&self, triangle: usize) -> Option<[u32; 3]> {
+        let midpoints = self.midpoints_of[triangle];
+        (!midpoints.contains(&UNTRACKED)).then_some(midpoints)
+    }
+
+    /// Images of the corners of a triangle.
+    pub(crate) fn image_of(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].vertices.map(|vertex| self.image[vertex as usize])
+    }
+
+    /// The triangle's image with its midpoints, if all are followed.
+    pub(crate) fn curved(&self, triangle: usize) -> Option<CurvedTriangle> {
+        let midpoints = self.midpoints_of(triangle)?.map(|midpoint| self.midpoints.image[midpoint as usize]);
+        Some(CurvedTriangle { corners: self.image_of(triangle), midpoints })
+    }
+
+    /// Triangles that [`split`](Self::split) would leave.
+    pub(crate) fn triangles_after(&self, is_split: &[bool]) -> usize {
+        let added = |midpoints: &[u32; 3]| midpoints.iter().filter(|&&midpoint| chosen(is_split, midpoint)).count();
+        self.triangles.len() + self.midpoints_of.iter().map(added).sum::<usize>()
+    }
+
+    /// Splits the edges whose midpoints are chosen, and every triangle at them: into two, three or four by the number of its
+    /// chosen edges, so that both sides of an edge agree. Returns the number of vertices inserted.
+    pub(crate) fn split(&mut self, is_split: &[bool]) -> usize {
+        let before = self.rest.len();
+        let mut vertex_of = vec![UNTRACKED; is_split.len()];
+        let mut triangles = Vec::with_capacity(self.triangles_after(is_split));
+        let mut midpoints_of = Vec::with_capacity(triangles.capacity());
+        for (triangle, midpoints) in self.triangles.iter().zip(&self.midpoints_of) {
+            let inserted = midpoints.map(|midpoint| {
+                chosen(is_split, midpoint).then(|| {
+                    let vertex = &mut vertex_of[midpoint as usize];
+                    if *vertex == UNTRACKED {
+                        *vertex = self.rest.len() as u32;
+                        self.rest.push(self.midpoints.rest[midpoint as usize]);
+                        self.image.push(self.midpoints.image[midpoint as usize]);
+                    }
+                    *vertex
+                })
+            });
+            if inserted == [None; 3] {
+                triangles.push(*triangle);
+                midpoints_of.push(*midpoints);
+            } else {
+                split_triangle(triangle, inserted, &self.image, &mut triangles);
+                midpoints_of.resize(triangles.len(), [UNTRACKED; 3]);
+            }
+        }
+        self.triangles = triangles;
+        self.midpoints_of = midpoints_of;
+        self.rest.len() - before
+    }
+}
+
+impl Midpoints {
+    fn find(&self, [a, b]: [u32; 2]) -> Option<u32> {
+        self.of_edge.get(&[a.min(b), a.max(b)]).copied()
+    }
+
+    fn find_or_insert(&mut self, [a, b]: [u32; 2], rest: &[DVec3]) -> u32 {
+        *self.of_edge.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+            self.rest.push(0.5 * (rest[a as usize] + rest[b as usize]));
+            self.rest.len() as u32 - 1
+        })
+    }
+}
+
+/// The directed edges 01, 12 and 20 of a triangle.
+fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+fn chosen(is_split: &[bool], midpoint: u32) -> bool {
+    midpoint != UNTRACKED && is_split[midpoint as usize]
+}
+
+/// Appends the parts of `triangle`, whose edges 01, 12 and 20 have got the vertices `inserted`.
+fn split_triangle(triangle: &SubTriangle, inserted: [Option<u32>; 3], image: &[DVec3], parts: &mut Vec<SubTriangle>) {
+    // Turned so that the cases need one pattern each.
+    let turns = match inserted {
+        [Some(_), None, None] | [Some(_), Some(_), None] | [Some(_), Some(_), Some(_)] => 0,
+        [None, Some(_), _] => 1,
+        _ => 2,
+    };
+    let turned = |index: usize| (index + turns) % 3;
+    let corner = |index: usize| (triangle.vertices[turned(index)], triangle.corners[turned(index)]);
+    let middle = |index: usize| {
+        let weights = 0.5 * (triangle.corners[turned(index)] + triangle.corners[turned(index + 1)]);
+        inserted[turned(index)].map(|vertex| (vertex, weights))
+    };
+    let mut push = |part: [(u32, DVec3); 3]| {
+        parts.push(SubTriangle { vertices: part.map(|p| p.0), corners: part.map(|p| p.1), parent: triangle.parent });
+    };
+    let [a, b, c] = [corner(0), corner(1), corner(2)];
+    match (middle(0), middle(1), middle(2)) {
+        (Some(ab), Some(bc), Some(ca)) => {
+            push([a, ab, ca]);
+            push([ab, b, bc]);
+            push([ca, bc, c]);
+            push([ab, bc, ca]);
+        }
+        (Some(ab), Some(bc), None) => {
+            push([ab, b, bc]);
+            let position = |p: (u32, DVec3)| image[p.0 as usize];
+            if position(a).distance_squared(position(bc)) < position(ab).distance_squared(position(c)) {
+                push([a, ab, bc]);
+                push([a, bc, c]);
+            } else {
+                push([a, ab, c]);
+                push([ab, bc, c]);
+            }
+        }
+        (Some(ab), None, None) => {
+            push([a, ab, c]);
+            push([ab, b, c]);
+        }
+        _ => push([a, b, c]),
+    }
+}
