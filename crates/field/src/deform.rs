@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use glam::DVec3;
-use isochore_mesh::{Cancelled, Monitor, TriMesh};
+use isochore_mesh::{Cancelled, ClosedMesh, Monitor, TriMesh};
 
 use crate::{
     Note, Receipt, RefineOptions, Stroke, StrokeReceipt,
@@ -77,7 +77,7 @@ pub fn deform(
     options: &DeformOptions,
     monitor: &dyn Monitor,
 ) -> Result<Deformed, DeformError> {
-    let volume_before = mesh.is_closed().then(|| signed_volume(&mesh.positions, &mesh.triangles));
+    let volume_before = ClosedMesh::new(mesh).is_ok().then(|| signed_volume(&mesh.positions, &mesh.triangles));
     let mut receipt = Receipt { volume_before, ..Receipt::default() };
     let mut tessellation = Tessellation::new(mesh);
     let criteria = options.refine.as_ref().map(|refine| Criteria::new(refine, &tessellation, volume_before));
@@ -104,11 +104,15 @@ pub fn deform(
         lock(&mut tessellation, &triangles, &mut receipt);
     }
     receipt.volume_after = volume_before.map(|_| signed_volume(&tessellation.image, &triangles));
-    receipt.max_displacement =
-        tessellation.rest.iter().zip(&tessellation.image).map(|(rest, image)| rest.distance(*image)).fold(0.0, f64::max);
+    receipt.max_displacement = tessellation
+        .rest
+        .iter()
+        .zip(&tessellation.image)
+        .map(|(rest, image)| rest.distance(*image))
+        .fold(0.0, f64::max);
 
     let (subdivision, image) = tessellation.into_subdivision();
-    let rest = TriMesh { positions: subdivision.positions.clone(), ..mesh.clone() };
+    let rest = mesh.subdivided(&subdivision);
     let mesh = TriMesh { positions: image, ..rest.clone() };
     Ok(Deformed { mesh, rest, receipt })
 }
@@ -175,3 +179,6 @@ fn count_different(before: &[DVec3], after: &[DVec3]) -> usize {
     let bits = |point: &DVec3| point.to_array().map(f64::to_bits);
     before.iter().zip(after).filter(|(before, after)| bits(before) != bits(after)).count()
 }
+
+#[cfg(test)]
+mod tests;

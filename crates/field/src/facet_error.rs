@@ -24,9 +24,7 @@ impl CurvedTriangle {
 
     /// How far the midpoint of each edge lies from the middle of the images of its ends.
     pub(crate) fn deviations(&self) -> [DVec3; 3] {
-        std::array::from_fn(|edge| {
-            self.midpoints[edge] - 0.5 * (self.corners[edge] + self.corners[(edge + 1) % 3])
-        })
+        std::array::from_fn(|edge| self.midpoints[edge] - 0.5 * (self.corners[edge] + self.corners[(edge + 1) % 3]))
     }
 
     /// Lengths of the edges 01, 12 and 20 of the flat triangle.

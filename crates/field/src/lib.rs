@@ -14,7 +14,6 @@ mod flow;
 #[cfg(test)]
 mod flux;
 mod lock;
-mod ordered_sum;
 mod pose;
 mod profile;
 mod receipt;

@@ -5,8 +5,7 @@
 //! and small triangles are moved least.
 
 use glam::DVec3;
-
-use crate::ordered_sum::ordered_sum;
+use isochore_mesh::sum_terms;
 
 /// What the lock did.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +75,9 @@ fn directions(rest: &[DVec3], image: &[DVec3], triangles: &[[u32; 3]]) -> Option
         let [a, b, c] = triangle.map(|vertex| image[vertex as usize]);
         // A sixth of the cross product is a third of the area, along the normal: the gradient of the volume at each corner.
         let gradient = (b - a).cross(c - a) / 6.0;
-        triangle.map(|vertex| directions[vertex as usize] += gradient);
+        for vertex in triangle {
+            directions[*vertex as usize] += gradient;
+        }
     }
     // Of the size of the mean area normal, so that λ is a length times a number near one.
     let scale = directions.iter().map(|direction| direction.length()).fold(0.0, f64::max);
@@ -93,7 +94,7 @@ fn directions(rest: &[DVec3], image: &[DVec3], triangles: &[[u32; 3]]) -> Option
 fn volume_cubic(positions: &[DVec3], directions: &[DVec3], triangles: &[[u32; 3]]) -> [f64; 4] {
     let center = positions.iter().sum::<DVec3>() / positions.len() as f64;
     let det = |a: DVec3, b: DVec3, c: DVec3| a.dot(b.cross(c)) / 6.0;
-    ordered_sum(triangles.len(), |index| {
+    sum_terms(triangles.len(), |index| {
         let [a, b, c] = triangles[index].map(|vertex| positions[vertex as usize] - center);
         let [u, v, w] = triangles[index].map(|vertex| directions[vertex as usize]);
         [

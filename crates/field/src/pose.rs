@@ -48,10 +48,7 @@ impl Pose {
     /// This pose followed by the motion at constant `twist` during `time`.
     pub fn moved(&self, twist: &BodyTwist, time: f64) -> Self {
         let step = twist.exponential(time);
-        Self {
-            rotation: (self.rotation * step.rotation).normalize(),
-            translation: self.transform(step.translation),
-        }
+        Self { rotation: (self.rotation * step.rotation).normalize(), translation: self.transform(step.translation) }
     }
 
     /// The twist that carries this pose to `end` in one unit of time by a turn of less than 180°; none when the relative
@@ -96,10 +93,7 @@ impl BodyTwist {
             ((1.0 - libm::cos(angle)) / square, (angle - libm::sin(angle)) / (square * angle))
         };
         let across = turn.cross(shift);
-        Pose {
-            rotation: rotation_from_vector(turn),
-            translation: shift + first * across + second * turn.cross(across),
-        }
+        Pose { rotation: rotation_from_vector(turn), translation: shift + first * across + second * turn.cross(across) }
     }
 
     /// Velocity of the local point `local`, in local axes.
@@ -156,7 +150,10 @@ mod tests {
     fn moving_by_the_twist_between_two_poses_arrives() {
         let start = pose([0.3, -0.2, 0.9], [1.0, 2.0, -0.5]);
         for turn in [[0.0; 3], [1e-9, 0.0, 0.0], [0.003, -0.004, 0.001], [0.0, 0.0, 3.1], [2.0, -1.0, 1.5]] {
-            let end = Pose { rotation: start.rotation * rotation_from_vector(turn.into()), translation: DVec3::new(0.2, 3.0, 0.4) };
+            let end = Pose {
+                rotation: start.rotation * rotation_from_vector(turn.into()),
+                translation: DVec3::new(0.2, 3.0, 0.4),
+            };
             let twist = start.twist_to(&end).unwrap();
             let arrived = start.moved(&twist, 1.0);
             // A few roundings of quantities near 3; near half a turn the logarithm divides by sin(half), still near 1.

@@ -211,7 +211,10 @@ mod tests {
             let block = profile.evaluate_block(&distances, 0.3);
             for lane in 0..LANES {
                 let (value, slope) = profile.evaluate(distances[lane] / 0.3);
-                assert_eq!((block.value[lane].to_bits(), block.slope[lane].to_bits()), (value.to_bits(), slope.to_bits()));
+                assert_eq!(
+                    (block.value[lane].to_bits(), block.slope[lane].to_bits()),
+                    (value.to_bits(), slope.to_bits())
+                );
             }
         }
     }

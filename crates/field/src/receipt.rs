@@ -91,7 +91,10 @@ impl fmt::Display for Note {
                 write!(f, "the flat triangles alone are off by {:.3} % of the volume; refine more", 100.0 * share)
             }
             Self::LockShift { ratio } => {
-                write!(f, "the lock moved a vertex by {ratio:.2} of the shortest edge at it; refine more before locking")
+                write!(
+                    f,
+                    "the lock moved a vertex by {ratio:.2} of the shortest edge at it; refine more before locking"
+                )
             }
             Self::LockSkipped => f.write_str("the lock was skipped: the displacement has no hold on the volume"),
             Self::LockNeedsClosed => f.write_str("the lock was skipped: the mesh is open and has no volume"),

@@ -3,13 +3,12 @@
 //! Three things split an edge: the image of its midpoint lies far from the middle of its ends; its image is long; or its
 //! triangle holds so much of the volume between flat and curved that the whole would miss the volume asked for.
 
-use isochore_mesh::{Aabb, Cancelled, Monitor};
+use isochore_mesh::{Aabb, Cancelled, Monitor, sum_terms};
 use rayon::prelude::*;
 
 use crate::{
     Stroke,
     facet_error::{SHARE_SEEN, edge_lengths},
-    ordered_sum::ordered_sum,
     tessellation::Tessellation,
 };
 
@@ -79,7 +78,8 @@ impl Criteria {
 
     /// The criteria for a mesh with the `image` it now has; `volume` is that of the closed mesh at rest, none of an open one.
     pub(crate) fn new(options: &RefineOptions, mesh: &Tessellation, volume: Option<f64>) -> Self {
-        let longest = || (0..mesh.triangles.len()).flat_map(|index| edge_lengths(&mesh.image_of(index))).fold(0.0, f64::max);
+        let longest =
+            || (0..mesh.triangles.len()).flat_map(|index| edge_lengths(&mesh.image_of(index))).fold(0.0, f64::max);
         Self {
             volume: volume.map_or(f64::INFINITY, |volume| options.volume * volume.abs()),
             deviation: options.deviation * Aabb::of(mesh.rest.iter().copied()).size().max_element(),
@@ -150,7 +150,7 @@ pub(crate) fn refine(
             .into_par_iter()
             .map(|index| mesh.curved(index).map_or(0.0, |curved| curved.volume_gain()))
             .collect();
-        refinement.facet_error = ordered_sum(gains.len(), |index| [gains[index]])[0] / SHARE_SEEN;
+        refinement.facet_error = sum_terms(gains.len(), |index| [gains[index]])[0] / SHARE_SEEN;
         let Some(criteria) = criteria else { break };
 
         let is_split = edges_to_split(mesh, criteria, &gains, refinement.facet_error);

@@ -69,7 +69,8 @@ impl Tessellation {
     /// Carries all images through one more stroke; returns the evaluations of the field.
     pub(crate) fn advance(&mut self, stroke: &Stroke, monitor: &dyn Monitor) -> Result<u64, Cancelled> {
         let stroke = std::slice::from_ref(stroke);
-        Ok(flow::advance(&mut self.image, stroke, monitor)? + flow::advance(&mut self.midpoints.image, stroke, monitor)?)
+        Ok(flow::advance(&mut self.image, stroke, monitor)?
+            + flow::advance(&mut self.midpoints.image, stroke, monitor)?)
     }
 
     /// From now on follows the edge midpoints of every triangle for which `is_wanted`, carried through the `strokes` so far.
@@ -88,7 +89,7 @@ impl Tessellation {
                 self.midpoints_of[index] = edges(vertices).map(|edge| self.midpoints.find_or_insert(edge, &self.rest));
             }
             if !self.midpoints_of[index].contains(&UNTRACKED) {
-                vertices.map(|vertex| is_tracked_vertex[vertex as usize] = true);
+                vertices.into_iter().for_each(|vertex| is_tracked_vertex[vertex as usize] = true);
             }
         }
         // Both sides of an edge must know its midpoint, or splitting one would tear the surface.

@@ -36,7 +36,7 @@ impl CompensatedSum {
 const CHUNK: usize = 4096;
 
 /// Sums `N` series of `count` terms at once, in parallel, with the same bits for any number of threads.
-pub(crate) fn sum_terms<const N: usize>(count: usize, term: impl Fn(usize) -> [f64; N] + Sync) -> [f64; N] {
+pub fn sum_terms<const N: usize>(count: usize, term: impl Fn(usize) -> [f64; N] + Sync) -> [f64; N] {
     let sum_chunk = |chunk: usize| {
         let mut sums = [CompensatedSum::default(); N];
         for index in chunk * CHUNK..((chunk + 1) * CHUNK).min(count) {

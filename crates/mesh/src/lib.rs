@@ -28,7 +28,7 @@ pub use assets::{Assets, GltfAssets};
 pub use block::{DistanceBlock, LANES, PointBlock};
 pub use check::Check;
 pub use closed_mesh::{ClosedMesh, MeshError};
-pub use compensated_sum::CompensatedSum;
+pub use compensated_sum::{CompensatedSum, sum_terms};
 pub use distance::Distance;
 pub use measure::{Components, EdgeLengths};
 pub use monitor::{Cancelled, Monitor, Silent};

@@ -11,12 +11,7 @@ use glam::DVec3;
 use isochore_mesh::{Aabb, LANES, PointBlock};
 
 use super::StrokeError;
-use crate::{
-    BodyTwist, Pose, RigidField, Tool,
-    pose::Placement,
-    rigid_field::VelocityBlock,
-    rk4::rk4_step,
-};
+use crate::{BodyTwist, Pose, RigidField, Tool, pose::Placement, rigid_field::VelocityBlock, rk4::rk4_step};
 
 /// Steps between two keys at most: more is a mistake in the recipe, and the table of poses must fit in memory.
 pub(super) const MAX_STEPS: usize = 1_000_000;
@@ -64,7 +59,8 @@ impl Move {
         if keys.iter().any(|key| !(key.translation.is_finite() && key.rotation.is_finite())) {
             return Err(StrokeError::NotFinite("the poses of the path"));
         }
-        let segments = (0..keys.len() - 1).map(|key| Segment::new(&tool, &keys, key, step)).collect::<Result<_, _>>()?;
+        let segments =
+            (0..keys.len() - 1).map(|key| Segment::new(&tool, &keys, key, step)).collect::<Result<_, _>>()?;
         Ok(Self { tool, keys, step, segments })
     }
 
@@ -108,9 +104,8 @@ impl Segment {
             return Err(StrokeError::TooManySteps { key, steps: count });
         }
         let steps = count as usize;
-        let mut placements: Vec<Placement> = (0..steps)
-            .map(|index| Placement::from(&start.moved(&twist, index as f64 / steps as f64)))
-            .collect();
+        let mut placements: Vec<Placement> =
+            (0..steps).map(|index| Placement::from(&start.moved(&twist, index as f64 / steps as f64))).collect();
         placements.push(Placement::from(end));
         Ok(Self { twist, placements, speed: top_speed(&twist, tool.support_bounds()) })
     }

@@ -248,6 +248,12 @@ fn bad_paths_are_refused() {
     assert_eq!(error(vec![Pose::IDENTITY], 0.125), StrokeError::TooFewKeys(1));
     assert_eq!(error(vec![Pose::IDENTITY, turn], 0.125), StrokeError::HalfTurn { key: 0 });
     assert_eq!(error(vec![Pose::IDENTITY; 2], -1.0), StrokeError::Step(-1.0));
-    assert!(matches!(error(vec![Pose::IDENTITY, Pose::at(DVec3::X * 1e9)], 1e-6), StrokeError::TooManySteps { key: 0, .. }));
-    assert_eq!(error(vec![Pose::IDENTITY, Pose::at(DVec3::NAN)], 0.125), StrokeError::NotFinite("the poses of the path"));
+    assert!(matches!(
+        error(vec![Pose::IDENTITY, Pose::at(DVec3::X * 1e9)], 1e-6),
+        StrokeError::TooManySteps { key: 0, .. }
+    ));
+    assert_eq!(
+        error(vec![Pose::IDENTITY, Pose::at(DVec3::NAN)], 0.125),
+        StrokeError::NotFinite("the poses of the path")
+    );
 }
