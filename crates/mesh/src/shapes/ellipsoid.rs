@@ -126,7 +126,7 @@ impl Distance for Ellipsoid {
             normal[1][i] = w1 * inverse;
             normal[2][i] = w2 * inverse;
         }
-        let mut gradient = [&mut out.gradient.x, &mut out.gradient.y, &mut out.gradient.z];
+        let gradient = [&mut out.gradient.x, &mut out.gradient.y, &mut out.gradient.z];
         for (axis, lanes) in self.order.into_iter().zip(normal) {
             *gradient[axis] = lanes;
         }

@@ -1,5 +1,7 @@
 //! One suite that every shape joins: distances against brute force, gradients against finite differences, blocks against points.
 
+use std::f64::consts::{PI, TAU};
+
 use glam::{DVec3, dvec3};
 use proptest::prelude::*;
 
@@ -78,7 +80,7 @@ proptest! {
         let mut nearest = f64::INFINITY;
         for i in 0..200 {
             for j in 0..400 {
-                let (polar, azimuth) = (f64::from(i) / 199.0 * 3.141592653589793, f64::from(j) / 400.0 * 6.283185307179586);
+                let (polar, azimuth) = (f64::from(i) / 199.0 * PI, f64::from(j) / 400.0 * TAU);
                 let unit = dvec3(libm::sin(polar) * libm::cos(azimuth), libm::sin(polar) * libm::sin(azimuth), libm::cos(polar));
                 nearest = nearest.min((unit * radii - p).length());
             }

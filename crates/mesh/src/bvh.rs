@@ -1,0 +1,239 @@
+//! A bounding volume hierarchy over triangles, and the closest point on them.
+
+mod closest_point;
+mod unit_frame;
+
+use glam::{DVec3, Vec3A};
+use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+
+pub use closest_point::{ClosestPoint, Feature};
+pub(crate) use closest_point::{SquaredDistance, closest_on_triangle};
+pub(crate) use unit_frame::UnitFrame;
+
+/// Triangles in a leaf at most: one test of the box for all of them. A kernel for many points amortizes well with 2 to 6.
+const LEAF_TRIANGLES: u32 = 4;
+
+/// Cost of a box test against that of a triangle test, for the decision whether to merge leaves.
+const BOX_COST: f32 = 1.0;
+
+/// Relative slack of pruning. Boxes are rounded outward, so the box distance in exact arithmetic is never too large; computed in
+/// `f64` from coordinates of size at most a few, it is off by less than ten rounding errors, as is the best squared distance it
+/// is compared with. Larger: needless visits. Smaller than 20 · 2⁻⁵³ = 2.3e-15: a nearest triangle could be missed.
+const PRUNING_SLACK: f64 = 1.0 + 1e-14;
+
+/// A node: an inner one has its children at `first` and `first + 1`, a leaf has `count` triangles from `first` on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Node {
+    /// Smallest coordinates in the unit frame, rounded down.
+    pub(crate) min: [f32; 3],
+    /// Largest coordinates in the unit frame, rounded up.
+    pub(crate) max: [f32; 3],
+    pub(crate) first: u32,
+    /// Zero for inner nodes.
+    pub(crate) count: u32,
+}
+
+/// Why triangles cannot be searched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum BvhError {
+    /// There is nothing to search.
+    #[error("the mesh has no triangles")]
+    Empty,
+    /// A vertex index points behind the last position.
+    #[error("triangle {triangle} uses vertex {vertex}, but there are only {vertices}")]
+    IndexOutOfRange {
+        /// Index of the offending triangle.
+        triangle: usize,
+        /// The vertex index it holds.
+        vertex: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A coordinate in use is infinite or not a number.
+    #[error("vertex {vertex} has a coordinate that is not finite")]
+    NotFinite {
+        /// Index of the offending vertex.
+        vertex: u32,
+    },
+}
+
+/// A bounding volume hierarchy over the triangles of a mesh, built once and searched from any number of threads.
+#[derive(Debug, Clone)]
+pub struct Bvh {
+    frame: UnitFrame,
+    nodes: Vec<Node>,
+    /// Longest way from the root to a leaf, in nodes.
+    depth: usize,
+    /// Triangle numbers of the mesh, in leaf order.
+    order: Vec<u32>,
+    /// Vertex indices, in leaf order.
+    triangles: Vec<[u32; 3]>,
+    /// Corners in the unit frame, in leaf order.
+    corners: Vec<[DVec3; 3]>,
+}
+
+impl Bvh {
+    /// Builds the hierarchy. Zero-area triangles count as the segments or points that they are.
+    ///
+    /// # Errors
+    /// See [`BvhError`].
+    pub fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, BvhError> {
+        check(positions, triangles)?;
+        let frame = UnitFrame::around(triangles.iter().flatten().map(|&vertex| positions[vertex as usize]));
+        let corners: Vec<_> =
+            triangles.iter().map(|t| t.map(|vertex| frame.inward(positions[vertex as usize]))).collect();
+        let boxes: Vec<_> = corners.iter().map(outward_box).collect();
+
+        // The portable builder: the convenience functions around it read the clock, which WebAssembly has not.
+        let indices = (0..boxes.len() as u32).collect();
+        let mut tree = PlocBuilder::new().build(PlocSearchDistance::Low, &boxes, indices, SortPrecision::U64, 2);
+        collapse(&mut tree, LEAF_TRIANGLES, BOX_COST);
+        tree.reorder_in_stack_traversal_order();
+
+        let mut order = Vec::with_capacity(triangles.len());
+        let nodes: Vec<_> = (tree.nodes.iter())
+            .map(|node| {
+                let first = if node.is_leaf() {
+                    let first = order.len() as u32;
+                    let held = node.first_index as usize..(node.first_index + node.prim_count) as usize;
+                    order.extend_from_slice(&tree.primitive_indices[held]);
+                    first
+                } else {
+                    node.first_index
+                };
+                let aabb = node.aabb();
+                Node { min: aabb.min.to_array(), max: aabb.max.to_array(), first, count: node.prim_count }
+            })
+            .collect();
+        Ok(Self {
+            frame,
+            depth: depth(&nodes),
+            nodes,
+            triangles: order.iter().map(|&i| triangles[i as usize]).collect(),
+            corners: order.iter().map(|&i| corners[i as usize]).collect(),
+            order,
+        })
+    }
+
+    /// The point of the triangles nearest to `point`, and the feature it lies on. Of equally near ones, any, but always the same.
+    pub fn closest_point(&self, point: DVec3) -> ClosestPoint {
+        let local = self.frame.inward(point);
+        let nearest = self.nearest(local, None);
+        let corners = &self.corners[nearest.slot as usize];
+        let (on_triangle, _) = closest_on_triangle(local, corners);
+        ClosestPoint {
+            point: self.frame.outward(on_triangle.point),
+            distance: nearest.squared.sqrt() / self.frame.scale(),
+            triangle: self.order[nearest.slot as usize],
+            feature: on_triangle.feature,
+        }
+    }
+
+    /// The nearest triangle to a point of the unit frame. A good `guess` (a slot in leaf order) saves time and changes nothing
+    /// but which one of equally near triangles is found.
+    pub(crate) fn nearest(&self, point: DVec3, guess: Option<u32>) -> SquaredDistance {
+        let mut best = SquaredDistance { slot: 0, squared: f64::INFINITY };
+        if let Some(slot) = guess {
+            best = SquaredDistance { slot, squared: closest_on_triangle(point, &self.corners[slot as usize]).1 };
+        }
+        let mut stack = Vec::with_capacity(self.depth + 1);
+        stack.push((0, self.nodes[0].squared_distance(point)));
+        while let Some((index, squared)) = stack.pop() {
+            if squared > best.squared * PRUNING_SLACK {
+                continue;
+            }
+            let node = &self.nodes[index as usize];
+            if node.count > 0 {
+                for slot in node.first..node.first + node.count {
+                    let (_, squared) = closest_on_triangle(point, &self.corners[slot as usize]);
+                    if squared < best.squared {
+                        best = SquaredDistance { slot, squared };
+                    }
+                }
+            } else {
+                let [left, right] = [node.first, node.first + 1]
+                    .map(|child| (child, self.nodes[child as usize].squared_distance(point)));
+                let (near, far) = if left.1 <= right.1 { (left, right) } else { (right, left) };
+                stack.push(far);
+                stack.push(near);
+            }
+        }
+        best
+    }
+
+    /// The frame in which nodes and corners are stored.
+    pub(crate) fn frame(&self) -> &UnitFrame {
+        &self.frame
+    }
+
+    /// Nodes, the root first, parents before children.
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Entries that a stack of nodes needs at most in a traversal that pushes both children.
+    pub(crate) fn stack_capacity(&self) -> usize {
+        self.depth + 1
+    }
+
+    /// Number of each triangle in the mesh, in leaf order.
+    pub(crate) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Vertex indices of the triangles, in leaf order.
+    pub(crate) fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Corners of the triangles in the unit frame, in leaf order.
+    pub(crate) fn corners(&self) -> &[[DVec3; 3]] {
+        &self.corners
+    }
+}
+
+impl Node {
+    /// Squared distance from a point of the unit frame to the box, zero inside.
+    pub(crate) fn squared_distance(&self, point: DVec3) -> f64 {
+        let min = DVec3::from_array(self.min.map(f64::from));
+        let max = DVec3::from_array(self.max.map(f64::from));
+        (min - point).max(point - max).max(DVec3::ZERO).length_squared()
+    }
+}
+
+fn check(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), BvhError> {
+    if triangles.is_empty() {
+        return Err(BvhError::Empty);
+    }
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for &vertex in corners {
+            match positions.get(vertex as usize) {
+                None => return Err(BvhError::IndexOutOfRange { triangle, vertex, vertices: positions.len() }),
+                Some(position) if !position.is_finite() => return Err(BvhError::NotFinite { vertex }),
+                Some(_) => {}
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The smallest box of `f32` that holds a triangle of `f64`.
+fn outward_box(corners: &[DVec3; 3]) -> obvhs::aabb::Aabb {
+    let [a, b, c] = *corners;
+    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+    let down = |x: f64| if f64::from(x as f32) > x { (x as f32).next_down() } else { x as f32 };
+    let up = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
+    obvhs::aabb::Aabb::new(Vec3A::from_array(min.to_array().map(down)), Vec3A::from_array(max.to_array().map(up)))
+}
+
+fn depth(nodes: &[Node]) -> usize {
+    let mut depths = vec![1; nodes.len()];
+    for (i, node) in nodes.iter().enumerate() {
+        if node.count == 0 {
+            depths[node.first as usize] = depths[i] + 1;
+            depths[node.first as usize + 1] = depths[i] + 1;
+        }
+    }
+    depths.into_iter().max().unwrap_or(0)
+}

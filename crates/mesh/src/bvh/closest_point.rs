@@ -1,0 +1,81 @@
+use glam::DVec3;
+
+/// Height over longest edge below which the plane of a triangle is not trusted alone and its edges are tried too. Larger: needless
+/// work. Smaller: rounding tilts the plane by 1e-16 over this number, and the point found may be that much farther than the nearest.
+const SLIVER: f64 = 1e-4;
+
+/// What part of a triangle a point lies on. Numbers are those of the corners: edge 0 runs from corner 0 to corner 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Feature {
+    /// Inside the triangle.
+    Face,
+    /// Inside the edge from this corner to the next.
+    Edge(u8),
+    /// At this corner.
+    Vertex(u8),
+}
+
+/// The point of a mesh nearest to some point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClosestPoint {
+    /// The point on the mesh, model units.
+    pub point: DVec3,
+    /// Its distance, not negative, model units.
+    pub distance: f64,
+    /// The triangle that holds it.
+    pub triangle: u32,
+    /// The part of the triangle that holds it.
+    pub feature: Feature,
+}
+
+/// A triangle by its place in leaf order, and the squared distance to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SquaredDistance {
+    pub(crate) slot: u32,
+    pub(crate) squared: f64,
+}
+
+/// A point of a triangle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct OnTriangle {
+    pub(crate) point: DVec3,
+    pub(crate) feature: Feature,
+}
+
+/// The nearest point of a triangle, and its squared distance. Every candidate is a convex combination of corners, so that the
+/// result lies on the triangle however thin that is.
+pub(crate) fn closest_on_triangle(point: DVec3, corners: &[DVec3; 3]) -> (OnTriangle, f64) {
+    let [a, b, c] = *corners;
+    let edges = [b - a, c - b, a - c];
+    let offsets = [point - a, point - b, point - c];
+    let normal = edges[0].cross(-edges[2]);
+    let area = normal.length_squared();
+
+    let mut best = (OnTriangle { point: a, feature: Feature::Vertex(0) }, f64::INFINITY);
+    // Twice the areas that the projection of the point spans with the edges, times twice the area of the triangle.
+    let spans = [0, 1, 2].map(|k| edges[k].cross(offsets[k]).dot(normal));
+    if spans[0] > 0.0 && spans[1] > 0.0 && spans[2] > 0.0 {
+        let projection = (a * spans[1] + b * spans[2] + c * spans[0]) / (spans[0] + spans[1] + spans[2]);
+        best = (OnTriangle { point: projection, feature: Feature::Face }, (point - projection).length_squared());
+        let longest = edges.map(DVec3::length_squared).into_iter().fold(0.0, f64::max);
+        if area > (SLIVER * SLIVER) * longest * longest {
+            return best;
+        }
+    }
+    for k in 0..3 {
+        let length2 = edges[k].length_squared();
+        let along = offsets[k].dot(edges[k]);
+        let (candidate, feature) = if along <= 0.0 {
+            (corners[k], Feature::Vertex(k as u8))
+        } else if along >= length2 {
+            (corners[(k + 1) % 3], Feature::Vertex((k as u8 + 1) % 3))
+        } else {
+            (corners[k] + edges[k] * (along / length2), Feature::Edge(k as u8))
+        };
+        let squared = (point - candidate).length_squared();
+        if squared < best.1 {
+            best = (OnTriangle { point: candidate, feature }, squared);
+        }
+    }
+    best
+}

@@ -1,0 +1,304 @@
+//! The signed distance of a mesh, sampled on a grid and interpolated by a cubic spline.
+
+mod grid;
+mod interpolant;
+mod lipschitz;
+mod packet;
+mod sampling;
+mod signs;
+mod spline;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::bvh::UnitFrame;
+use crate::{Aabb, Bvh, BvhError, Cancelled, Distance, DistanceBlock, Monitor, PointBlock, TriMesh, WindingNumber};
+
+pub use grid::Grid;
+use interpolant::Interpolant;
+
+/// How far a grid reaches beyond the mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Padding {
+    /// So far that the interpolant can be trusted up to this distance outside the surface, model units: the support of a tool.
+    Reach(f64),
+    /// At least this length on every side, model units.
+    Length(f64),
+    /// This many cells on every side.
+    Cells(usize),
+}
+
+/// What to sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DistanceFieldOptions {
+    /// Cells on the longest side of the mesh, padding not counted; at least 4.
+    pub resolution: usize,
+    /// What to add around the mesh.
+    pub padding: Padding,
+    /// Bytes that building may take at most, estimated before any is taken.
+    pub memory_limit: u64,
+}
+
+impl Default for DistanceFieldOptions {
+    /// 64 cells, padded by 2, in at most 4 GiB.
+    fn default() -> Self {
+        Self { resolution: 64, padding: Padding::Cells(2), memory_limit: 4 << 30 }
+    }
+}
+
+/// Why there is no distance field.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum DistanceFieldError {
+    /// The mesh cannot be searched.
+    #[error(transparent)]
+    Mesh(#[from] BvhError),
+    /// The grid is too coarse to say anything.
+    #[error(
+        "a resolution of {resolution} cells is too low: at least {least} are needed on the longest side of the mesh"
+    )]
+    Resolution {
+        /// Cells asked for.
+        resolution: usize,
+        /// Fewest that are accepted.
+        least: usize,
+    },
+    /// The reach or padding is negative or not finite.
+    #[error("a distance field can be padded by zero or a positive length, not by {length}")]
+    Padding {
+        /// The offending value, model units.
+        length: f64,
+    },
+    /// All vertices coincide, or lie so far apart that their distance overflows.
+    #[error("a mesh with an extent of {extent} has no distance grid")]
+    Extent {
+        /// Longest side of the bounding box, model units.
+        extent: f64,
+    },
+    /// The grid would not fit into the memory it may take.
+    #[error(
+        "a distance grid of {} × {} × {} samples takes {bytes} bytes to build, more than the limit of {limit}: \
+         lower the resolution or the reach", .dims[0], .dims[1], .dims[2]
+    )]
+    Memory {
+        /// Nodes along x, y and z.
+        dims: [usize; 3],
+        /// Estimated bytes.
+        bytes: u64,
+        /// [`DistanceFieldOptions::memory_limit`].
+        limit: u64,
+    },
+    /// The triangles of a closed mesh face inward.
+    #[error("the mesh is inside out: it encloses the volume {volume}; turn its triangles around")]
+    InsideOut {
+        /// The negative volume, cubic model units.
+        volume: f64,
+    },
+    /// The winding numbers of an open mesh do not fall off to outside where the reach ends.
+    #[error("the mesh is open and its inside has no end: node {node:?} at the border of the grid counts as inside")]
+    Unbounded {
+        /// Coordinates of the offending node, model units.
+        node: [f64; 3],
+    },
+    /// The monitor stopped the work.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Signed distances to a mesh on a regular grid, and the tricubic B-spline through them.
+///
+/// The spline is twice continuously differentiable, and its gradient is that of the spline itself, never interpolated on its own:
+/// fields made of both stay divergence-free. It smooths edges and medial surfaces over about two cells. Beyond the cells that have
+/// all their neighbors the value is infinite and the gradient zero.
+///
+/// Of a closed mesh, that is inside which its winding number exceeds one half; of an open one likewise, which puts a soft end
+/// to the inside across each hole: there the sign changes away from the surface, where the distance is not zero.
+#[derive(Debug, Clone)]
+pub struct DistanceField {
+    grid: Grid,
+    samples: Vec<f32>,
+    sample_error: f64,
+    interpolant: Interpolant,
+    surface: Aabb,
+    centroid: DVec3,
+    reach: f64,
+    is_closed: bool,
+}
+
+/// Bytes a node takes while the field is built: sample, coefficient, region, and two copies in `f64` between the filters.
+const BYTES_PER_NODE: u64 = 4 + 4 + 4 + 2 * 8;
+
+impl DistanceField {
+    /// Samples the distance to `mesh`.
+    ///
+    /// # Errors
+    /// See [`DistanceFieldError`].
+    pub fn new(
+        mesh: &TriMesh,
+        options: &DistanceFieldOptions,
+        monitor: &dyn Monitor,
+    ) -> Result<Self, DistanceFieldError> {
+        let bvh = Bvh::new(&mesh.positions, &mesh.triangles)?;
+        let surface = Aabb::of(mesh.triangles.iter().flatten().map(|&vertex| mesh.positions[vertex as usize]));
+        let grid = Grid::around(surface, options.resolution, options.padding)?;
+        let bytes = (grid.len() as u64).saturating_mul(BYTES_PER_NODE);
+        if bytes > options.memory_limit || grid.len() > u32::MAX as usize {
+            return Err(DistanceFieldError::Memory { dims: grid.dims, bytes, limit: options.memory_limit });
+        }
+        let is_closed = is_closed(&mesh.triangles);
+        let (volume, centroid) = volume_and_centroid(&bvh);
+        if is_closed && volume < 0.0 {
+            return Err(DistanceFieldError::InsideOut { volume });
+        }
+
+        let (mut samples, sample_error) = sampling::unsigned(&bvh, &grid, monitor)?;
+        monitor.check("signs", 0.0)?;
+        sign(&mut samples, sample_error, &bvh, &grid, is_closed, monitor)?;
+        let reach = match options.padding {
+            Padding::Reach(reach) => {
+                check_border(&grid, &samples, reach)?;
+                reach
+            }
+            Padding::Length(length) => (length - 2.0 * grid.cell).max(0.0),
+            Padding::Cells(cells) => cells.saturating_sub(2) as f64 * grid.cell,
+        };
+        monitor.check("spline", 0.0)?;
+        let interpolant = Interpolant::new(&grid, &samples);
+        Ok(Self { grid, samples, sample_error, interpolant, surface, centroid, reach, is_closed })
+    }
+
+    /// Where the samples lie.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Signed distances at the nodes, in [z, y, x] order: x fastest. Model units.
+    pub fn samples(&self) -> &[f32] {
+        &self.samples
+    }
+
+    /// No sample is farther from the exact distance than this, model units.
+    pub fn sample_error(&self) -> f64 {
+        self.sample_error
+    }
+
+    /// Whether each edge of the mesh is used as often in one direction as in the other. If not, its inside is a matter of degree.
+    pub fn is_closed(&self) -> bool {
+        self.is_closed
+    }
+}
+
+impl Distance for DistanceField {
+    fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
+        self.interpolant.sample_into(points, out);
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.surface
+    }
+
+    /// Centroid of the volume; of the area, if the mesh is open or encloses nothing.
+    fn centroid(&self) -> DVec3 {
+        self.centroid
+    }
+
+    fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    fn lipschitz(&self) -> f64 {
+        self.interpolant.lipschitz()
+    }
+}
+
+/// Gives the samples their signs.
+fn sign(
+    samples: &mut [f32],
+    sample_error: f64,
+    bvh: &Bvh,
+    grid: &Grid,
+    is_closed: bool,
+    monitor: &dyn Monitor,
+) -> Result<(), Cancelled> {
+    let winding_number = WindingNumber::new(bvh);
+    if is_closed {
+        let regions = signs::Regions::new(grid, samples, sample_error);
+        let representatives = regions.representatives(samples);
+        let inside: Vec<bool> = (representatives.par_iter())
+            .map(|&node| {
+                if monitor.is_cancelled() {
+                    Err(Cancelled)
+                } else {
+                    Ok(winding_number.is_inside(grid.node_at(node as usize)))
+                }
+            })
+            .collect::<Result<_, _>>()?;
+        let inside = representatives.into_iter().zip(inside).filter_map(|(node, is_inside)| is_inside.then_some(node));
+        regions.negate(samples, inside);
+        Ok(())
+    } else {
+        samples.par_iter_mut().enumerate().try_for_each(|(index, sample)| {
+            if monitor.is_cancelled() {
+                return Err(Cancelled);
+            }
+            if winding_number.is_inside(grid.node_at(index)) {
+                *sample = -*sample;
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Whether no edge is left over when opposite directions cancel.
+fn is_closed(triangles: &[[u32; 3]]) -> bool {
+    let mut edges: Vec<(u32, u32, bool)> = (triangles.par_iter())
+        .flat_map_iter(|&[a, b, c]| [(a, b), (b, c), (c, a)])
+        .filter(|(from, to)| from != to)
+        .map(|(from, to)| (from.min(to), from.max(to), from < to))
+        .collect();
+    edges.par_sort_unstable();
+    edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|uses| {
+        let forward = uses.iter().filter(|edge| edge.2).count();
+        2 * forward == uses.len()
+    })
+}
+
+/// Signed volume and centroid of the volume; centroid of the area where the volume is too small to have one.
+fn volume_and_centroid(bvh: &Bvh) -> (f64, DVec3) {
+    // In the unit frame, so that nothing cancels far from the origin.
+    let (mut volume, mut moment) = (0.0, DVec3::ZERO);
+    let (mut area, mut area_moment) = (0.0, DVec3::ZERO);
+    for &[a, b, c] in bvh.corners() {
+        let part = a.dot(b.cross(c)) / 6.0;
+        volume += part;
+        moment += part * (a + b + c) / 4.0;
+        let part = 0.5 * (b - a).cross(c - a).length();
+        area += part;
+        area_moment += part * (a + b + c) / 3.0;
+    }
+    let frame: &UnitFrame = bvh.frame();
+    let local = if volume.abs() > LEAST_VOLUME {
+        moment / volume
+    } else if area > 0.0 {
+        area_moment / area
+    } else {
+        DVec3::ZERO
+    };
+    (volume / (frame.scale() * frame.scale() * frame.scale()), frame.outward(local))
+}
+
+/// Share of the bounding cube below which a volume has no centroid worth the name. Larger: thin sheets would get the centroid of
+/// their area. Smaller: rounding could put the centroid anywhere.
+const LEAST_VOLUME: f64 = 1e-9;
+
+/// At the border of the grid, beyond which the field is cut off, the distance must exceed the reach.
+fn check_border(grid: &Grid, samples: &[f32], reach: f64) -> Result<(), DistanceFieldError> {
+    let [nx, ny, nz] = grid.dims;
+    let is_border = |&index: &usize| {
+        let (i, j, k) = (index % nx, index / nx % ny, index / (nx * ny));
+        i == 0 || j == 0 || k == 0 || i == nx - 1 || j == ny - 1 || k == nz - 1
+    };
+    match (0..samples.len()).filter(is_border).find(|&index| f64::from(samples[index]) < reach + grid.cell) {
+        Some(index) => Err(DistanceFieldError::Unbounded { node: grid.node_at(index).to_array() }),
+        None => Ok(()),
+    }
+}
