@@ -57,7 +57,7 @@ pub enum DeformError {
 /// that happens; smaller cries over nothing.
 const NOTABLE_LOCK_SHIFT: f64 = 0.1;
 
-/// A facet error beyond this share of the volume is worth a note.
+/// A facet error, estimated or measured, beyond this share of the volume is worth a note.
 const NOTABLE_FACET_ERROR: f64 = 5e-3;
 
 /// Deforms `mesh` by the strokes, one after the other.
@@ -94,10 +94,12 @@ pub fn deform(
 
     let triangles = tessellation.indices();
     if let Some(volume) = volume_before {
-        receipt.volume_before_lock = Some(signed_volume(&tessellation.image, &triangles));
+        let bare = signed_volume(&tessellation.image, &triangles);
+        receipt.volume_before_lock = Some(bare);
         receipt.facet_error = Some(facet_error);
-        if facet_error.abs() > NOTABLE_FACET_ERROR * volume.abs() {
-            receipt.notes.push(Note::FacetError { share: (facet_error / volume).abs() });
+        let share = (facet_error / volume).abs().max((bare / volume - 1.0).abs());
+        if share > NOTABLE_FACET_ERROR {
+            receipt.notes.push(Note::FacetError { share });
         }
     }
     if options.lock {

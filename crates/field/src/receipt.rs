@@ -67,7 +67,7 @@ pub enum Note {
     },
     /// The flat triangles alone are off by a noticeable share of the volume.
     FacetError {
-        /// Estimated share of the volume.
+        /// Share of the volume, the larger of estimate and measure.
         share: f64,
     },
     /// The lock had to move vertices by a noticeable part of the edges at them.

@@ -125,6 +125,7 @@ pub(crate) fn resolve_field(
                 is_split[midpoint as usize] |= length > coarse;
             }
         }
+        refinement.evaluations += add_longest_edges(mesh, past, &mut is_split, monitor)?;
         if mesh.triangles_after(&is_split) > criteria.max_triangles {
             refinement.is_limited = true;
             break;
@@ -153,10 +154,11 @@ pub(crate) fn refine(
         refinement.facet_error = sum_terms(gains.len(), |index| [gains[index]])[0] / SHARE_SEEN;
         let Some(criteria) = criteria else { break };
 
-        let is_split = edges_to_split(mesh, criteria, &gains, refinement.facet_error);
+        let mut is_split = edges_to_split(mesh, criteria, &gains, refinement.facet_error);
         if !is_split.contains(&true) {
             break;
         }
+        refinement.evaluations += add_longest_edges(mesh, strokes, &mut is_split, monitor)?;
         if mesh.triangles_after(&is_split) > criteria.max_triangles {
             refinement.is_limited = true;
             break;
@@ -164,6 +166,41 @@ pub(crate) fn refine(
         refinement.inserted += mesh.split(&is_split);
     }
     Ok(refinement)
+}
+
+/// Wherever a triangle is split, has its longest edge split too, and so on through the neighbors.
+///
+/// Without this a triangle can lose its two shorter edges again and again, its longest always just within the criteria, and
+/// shrink to a sliver along it. With it every split of a triangle is at least a bisection of its longest edge, which keeps
+/// angles bounded (M.-C. Rivara, *Algorithms for refining triangular grids suitable for adaptive and multigrid techniques*,
+/// 1984).
+fn add_longest_edges(
+    mesh: &mut Tessellation,
+    strokes: &[Stroke],
+    is_split: &mut Vec<bool>,
+    monitor: &dyn Monitor,
+) -> Result<u64, Cancelled> {
+    let mut evaluations = 0;
+    loop {
+        let known = mesh.midpoint_count();
+        evaluations += mesh.track(strokes, |mesh, index| mesh.is_triangle_split(index, is_split), monitor)?;
+        is_split.resize(mesh.midpoint_count(), false);
+        let mut has_changed = mesh.midpoint_count() > known;
+        for index in 0..mesh.triangles.len() {
+            if !mesh.is_triangle_split(index, is_split) {
+                continue;
+            }
+            let Some(midpoints) = mesh.midpoints_of(index) else { continue };
+            let lengths = edge_lengths(&mesh.image_of(index));
+            let longest = (0..3).fold(0, |longest, edge| if lengths[edge] > lengths[longest] { edge } else { longest });
+            let chosen = &mut is_split[midpoints[longest] as usize];
+            has_changed |= !*chosen;
+            *chosen = true;
+        }
+        if !has_changed {
+            return Ok(evaluations);
+        }
+    }
 }
 
 fn has_moved(mesh: &Tessellation, triangle: usize) -> bool {

@@ -126,6 +126,11 @@ impl Tessellation {
         Some(CurvedTriangle { corners: self.image_of(triangle), midpoints })
     }
 
+    /// Whether an edge of the triangle is chosen.
+    pub(crate) fn is_triangle_split(&self, triangle: usize, is_split: &[bool]) -> bool {
+        self.midpoints_of[triangle].iter().any(|&midpoint| chosen(is_split, midpoint))
+    }
+
     /// Triangles that [`split`](Self::split) would leave.
     pub(crate) fn triangles_after(&self, is_split: &[bool]) -> usize {
         let added = |midpoints: &[u32; 3]| midpoints.iter().filter(|&&midpoint| chosen(is_split, midpoint)).count();

@@ -1,9 +1,9 @@
 use std::{f64::consts::FRAC_PI_2, sync::Arc};
 
-use isochore_mesh::{Silent, Sphere, primitives};
+use isochore_mesh::{Capsule, Silent, Sphere, primitives};
 
 use super::*;
-use crate::{Move, Pose, Profile, Tool, Twist};
+use crate::{Move, Pose, Profile, Tool, Twist, rotation_from_vector};
 
 const BARE: DeformOptions = DeformOptions { refine: None, lock: false };
 
@@ -75,6 +75,21 @@ fn refinement_keeps_the_surface_closed_and_the_rest_volume() {
     // Midpoints of straight edges change no volume beyond rounding.
     assert!((deformed.rest.volume() / sphere.volume() - 1.0).abs() < 1e-14);
     assert_eq!(deformed.rest.positions[..sphere.positions.len()], sphere.positions);
+}
+
+/// A rod that turns inside the surface squeezes some triangles until their longest edge is the one best within the criteria.
+#[test]
+fn refinement_ends_and_leaves_no_slivers() {
+    let rod = Arc::new(Tool::new(Arc::new(Capsule::new(0.1, 0.8).unwrap()), 0.25, Profile::Quintic).unwrap());
+    let at = DVec3::new(0.0, 0.5, 0.0);
+    let turned = Pose { rotation: rotation_from_vector(DVec3::Y * FRAC_PI_2), translation: at };
+    let stroke = Stroke::Move(Move::new(rod, vec![Pose::at(at), turned], 0.125).unwrap());
+    let sphere = primitives::icosphere(1.0, 4);
+    let deformed = run(&sphere, &[stroke], &DeformOptions { refine: Some(RefineOptions::default()), lock: false });
+    let shortest = |mesh: &TriMesh| mesh.edge_lengths().unwrap().min;
+    // Six halvings of an edge are what a stretch of 64 would need; an endless split goes on to 2⁻⁴⁰.
+    assert!(shortest(&deformed.rest) > shortest(&sphere) / 64.0);
+    assert!(volume_change(&deformed).abs() < 1e-3);
 }
 
 #[test]
