@@ -47,6 +47,9 @@ struct Piece {
     radius: f64,
     is_first: bool,
     is_last: bool,
+    /// Where the slope at the end is taken: at the start of the domain for the last piece of a closed curve, so that the two
+    /// pieces that meet there see the same sign and no minimum falls between them by rounding.
+    end_of_slope: f64,
 }
 
 /// Half the derivative of the squared distance by the parameter, and its own derivative.
@@ -65,6 +68,9 @@ impl<C: Curve> ClosestPoint<C> {
         let last = pieces.len() - 1;
         pieces[0].is_first = !curve.is_closed();
         pieces[last].is_last = !curve.is_closed();
+        if curve.is_closed() {
+            pieces[last].end_of_slope = pieces[0].start;
+        }
         Self { curve, pieces }
     }
 
@@ -138,7 +144,7 @@ impl<C: Curve> ClosestPoint<C> {
     /// Reports the local minima of a piece: roots with rising slope in (start, end], and the ends of an open curve.
     fn minima(&self, piece: &Piece, query: DVec3, report: &mut impl FnMut(CurveProjection)) {
         let start = self.slope(piece.start, query);
-        let end = self.slope(piece.end, query);
+        let end = self.slope(piece.end_of_slope, query);
         if piece.is_first && start.value >= 0.0 {
             report(self.project(piece.start, query));
         }
@@ -205,7 +211,15 @@ fn cut(curve: &impl Curve, start: f64, end: f64, depth: u32, pieces: &mut Vec<Pi
     let speed = &mut |u| curve.jet(u).speed();
     // The margin covers the error of the quadrature on so small a turn, and rounding.
     let radius = gauss(speed, start, middle).max(gauss(speed, middle, end)) * (1.0 + 1e-6);
-    pieces.push(Piece { start, end, center: curve.position(middle), radius, is_first: false, is_last: false });
+    pieces.push(Piece {
+        start,
+        end,
+        center: curve.position(middle),
+        radius,
+        is_first: false,
+        is_last: false,
+        end_of_slope: end,
+    });
 }
 
 #[cfg(test)]
@@ -246,6 +260,17 @@ mod tests {
         let after = search.closest(DVec3::new(2.0, 1.0, 0.0));
         assert_eq!((after.parameter, after.position), (1.0, DVec3::X));
         assert!((search.closest(DVec3::new(0.25, 3.0, 0.0)).parameter - 0.25).abs() < 1e-15);
+    }
+
+    #[test]
+    fn points_at_the_seam_of_a_closed_curve_are_found() {
+        let knot = TrigonometricCurve::torus_knot();
+        let search = ClosestPoint::new(&knot);
+        for shift in [-1e-15, 0.0, 1e-15] {
+            let query = knot.position(shift) + knot.jet(shift).normal().unwrap() * 0.05;
+            // The query is 0.05 from the seam, within the radius of curvature.
+            assert!((search.closest(query).distance - 0.05).abs() < 1e-14);
+        }
     }
 
     #[test]

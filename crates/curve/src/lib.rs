@@ -9,6 +9,8 @@ mod double_reflection;
 mod frame;
 mod frenet;
 mod gauge_quadrature;
+mod inversion;
+mod ph_cubic;
 mod projection;
 mod quadrature;
 mod reach;
@@ -18,6 +20,7 @@ mod spine;
 mod spline;
 mod tangents;
 mod tangents_only;
+mod twist;
 
 pub use analytic::{FunctionCurve, TrigonometricCurve, TrigonometricTerm};
 pub use arc_length::{ArcLength, length, total_curvature, total_squared_curvature, total_torsion};
@@ -30,6 +33,8 @@ pub use frame::{
 };
 pub use frenet::{FrenetError, frenet_frames};
 pub use gauge_quadrature::exact_frames;
+pub use inversion::Inversion;
+pub use ph_cubic::{PhCubic, PhCubicError, PhSpline, PhSplineError, RationalRotation};
 pub use projection::project_along_chord;
 pub use reach::{Reach, reach};
 pub use rotation::rotate_minimally;
@@ -38,3 +43,7 @@ pub use spine::{Spine, SpineError, perpendicular, uniform_parameters};
 pub use spline::{CubicSpline, EndCondition, Parametrization, SplineError};
 pub use tangents::{TangentError, TangentRule};
 pub use tangents_only::chord_from_tangents;
+pub use twist::{
+    TwistConstraint, TwistError, TwistLaw, TwistedFrames, close_frames, closing_angle, meet_constraints,
+    meet_end_direction, spread, total_angular_speed, total_squared_angular_speed, twist_shares,
+};

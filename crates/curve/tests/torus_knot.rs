@@ -1,4 +1,5 @@
 //! The torus knot of Wang et al. 2008, equation (16): golden frames from 40-digit arithmetic, tables III and IV, orders.
+#![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 

@@ -1,0 +1,251 @@
+//! Properties of double reflection that its rivals lack: symmetry, Möbius invariance, exactness on spheres, dense samples.
+#![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
+
+use glam::DVec3;
+use isochore_curve::{
+    Bezier, Curve, DegenerateSegment, Frame, FrameError, FrameMethod, FunctionCurve, Inversion, Spine,
+    TrigonometricCurve, exact_frames, orthogonal_reference, rotation_minimizing_frames, runge_kutta_frames,
+    uniform_parameters,
+};
+use proptest::prelude::*;
+
+const RIVALS: [FrameMethod; 2] = [FrameMethod::Projection, FrameMethod::Rotation];
+
+fn carry(spine: &Spine, reference: DVec3, method: FrameMethod) -> Vec<Frame> {
+    rotation_minimizing_frames(spine, reference, method, DegenerateSegment::Refuse).unwrap().stations
+}
+
+fn knot_samples(segments: usize) -> Spine {
+    let knot = TrigonometricCurve::torus_knot();
+    Spine::from_jets(uniform_parameters(&knot, segments).iter().map(|&u| knot.jet(u)), false).unwrap()
+}
+
+#[test]
+fn back_and_forth_is_the_identity() {
+    let spine = knot_samples(64);
+    let symmetric =
+        [FrameMethod::DoubleReflection, FrameMethod::Projection, FrameMethod::Rotation, FrameMethod::TangentsOnly];
+    for method in symmetric {
+        let forth = carry(&spine, -DVec3::X, method);
+        let back = carry(&spine.reversed(), forth[64].r, method);
+        // 128 steps of rounding at random: √128 · 2e-16, and a margin of three.
+        assert!(back[64].r.distance(forth[0].r) < 8e-15, "{method:?}: {:e}", back[64].r.distance(forth[0].r));
+    }
+    // The same with tangents that point backwards along the reversed points.
+    let mut points = spine.points().to_vec();
+    let mut tangents = spine.tangents().to_vec();
+    points.reverse();
+    tangents.reverse();
+    let forth = carry(&spine, -DVec3::X, FrameMethod::DoubleReflection);
+    let back = carry(&Spine::new(points, tangents, false).unwrap(), forth[64].r, FrameMethod::DoubleReflection);
+    assert!(back[64].r.distance(forth[0].r) < 8e-15);
+    // Runge–Kutta is not symmetric.
+    let knot = TrigonometricCurve::torus_knot();
+    let mut parameters = uniform_parameters(&knot, 64);
+    let forth = runge_kutta_frames(&knot, &parameters, -DVec3::X).unwrap();
+    parameters.reverse();
+    let back = runge_kutta_frames(&knot, &parameters, forth[64].r).unwrap();
+    // Its error at 64 steps is 4e-2; what does not cancel is a part of that.
+    assert!(back[64].r.distance(forth[0].r) > 1e-3);
+}
+
+#[test]
+fn double_reflection_alone_commutes_with_inversions() {
+    let spine = knot_samples(64);
+    for (center, squared_radius) in
+        [(DVec3::new(0.1, 0.2, 1.5), 1.0), (DVec3::new(0.05, 0.0, 0.1), 0.5), (DVec3::new(2.0, -1.0, 0.3), 4.0)]
+    {
+        let inversion = Inversion { center, squared_radius };
+        let image = inversion.spine(&spine).unwrap();
+        let difference = |method| {
+            let mapped: Vec<Frame> = carry(&spine, -DVec3::X, method)
+                .iter()
+                .zip(spine.points())
+                .map(|(frame, &point)| inversion.frame(point, frame))
+                .collect();
+            let direct = carry(&image, mapped[0].r, method);
+            mapped.iter().zip(&direct).map(|(a, b)| a.r.distance(b.r)).fold(0.0, f64::max)
+        };
+        // Rounding over 64 steps, with points magnified up to ten times near the center.
+        assert!(difference(FrameMethod::DoubleReflection) < 2e-14, "{:e}", difference(FrameMethod::DoubleReflection));
+        for rival in RIVALS {
+            assert!(difference(rival) > 1e-2, "{rival:?}: {:e}", difference(rival));
+        }
+    }
+}
+
+/// A wavy curve on the unit sphere, with its derivatives by the product rule left to differences of nothing: only its
+/// points and tangents are used.
+fn spherical_samples(count: usize) -> Spine {
+    let jets = (0..count).map(|i| {
+        let u = 5.5 * i as f64 / (count - 1) as f64;
+        let (height, slope) = (0.8 * libm::sin(2.3 * u), 0.8 * 2.3 * libm::cos(2.3 * u));
+        let (radius, radius_slope) = ((1.0 - height * height).sqrt(), -height * slope / (1.0 - height * height).sqrt());
+        let (sin, cos) = libm::sincos(u);
+        let point = DVec3::new(radius * cos, radius * sin, height);
+        let tangent = DVec3::new(radius_slope * cos - radius * sin, radius_slope * sin + radius * cos, slope);
+        (point, tangent)
+    });
+    let (points, tangents) = jets.unzip();
+    Spine::new(points, tangents, false).unwrap()
+}
+
+#[test]
+fn eight_samples_of_a_spherical_curve_are_enough() {
+    let spine = spherical_samples(8);
+    // On a sphere the normal makes a constant angle with every rotation-minimizing vector. Start 45 degrees from it, since
+    // projection carries the normal itself exactly.
+    let start = Frame::new(spine.point(0), spine.tangent(0)).turned(std::f64::consts::FRAC_PI_4);
+    let error = |method| {
+        let last = carry(&spine, start.r, method)[7];
+        let exact = Frame::new(spine.point(7), spine.tangent(7)).turned(std::f64::consts::FRAC_PI_4);
+        exact.angle_to(last.r).abs()
+    };
+    assert!(error(FrameMethod::DoubleReflection) < 5e-15, "{:e}", error(FrameMethod::DoubleReflection));
+    for rival in RIVALS {
+        assert!(error(rival) > 0.1, "{rival:?}: {:e}", error(rival));
+    }
+}
+
+#[test]
+fn planes_and_lines_are_exact() {
+    let wave = FunctionCurve::new(
+        |u| {
+            let (sin, cos) = libm::sincos(u);
+            isochore_curve::CurveJet {
+                position: DVec3::new(u, sin, 0.0),
+                first: DVec3::new(1.0, cos, 0.0),
+                second: DVec3::new(0.0, -sin, 0.0),
+                third: DVec3::new(0.0, -cos, 0.0),
+            }
+        },
+        (0.0, 9.0),
+        false,
+    );
+    let frames = carry(&Spine::sample(&wave, 6).unwrap(), DVec3::Z, FrameMethod::DoubleReflection);
+    assert!(frames.iter().all(|frame| frame.r.distance(DVec3::Z) < 1e-15), "the plane's normal stays");
+    let line = Spine::new((0..5).map(|i| DVec3::ONE * f64::from(i * i)).collect(), vec![DVec3::ONE; 5], false).unwrap();
+    let frames = carry(&line, DVec3::X, FrameMethod::DoubleReflection);
+    assert!(frames.iter().all(|frame| frame.r.distance(frames[0].r) < 1e-15));
+}
+
+#[test]
+fn dense_samples_lose_nothing() {
+    let knot = TrigonometricCurve::torus_knot();
+    for h in [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13] {
+        let parameters: Vec<f64> = (0..=1000).map(|i| 0.3 + f64::from(i) * h).collect();
+        let spine = Spine::from_jets(parameters.iter().map(|&u| knot.jet(u)), false).unwrap();
+        let reference = knot.jet(0.3).normal().unwrap();
+        let frames =
+            rotation_minimizing_frames(&spine, reference, FrameMethod::DoubleReflection, DegenerateSegment::Refuse)
+                .unwrap();
+        assert!(frames.substituted.is_empty(), "no chord is zero");
+        let exact = exact_frames(&knot, &[0.3, parameters[1000]], reference).unwrap();
+        let last = frames.stations[1000];
+        // A thousand steps of rounding at random: √1000 · 2e-16 = 7e-15, and a margin of two.
+        assert!(last.r.distance(exact[1].r) < 1.5e-14, "h = {h:e}: {:e}", last.r.distance(exact[1].r));
+        assert!(last.r.dot(last.t).abs() < 1.5e-14);
+    }
+}
+
+#[test]
+fn s_curve_errors_shrink_with_its_height() {
+    // Largest angle error with 64 segments, for the heights of Zheng's section 3.4. Torsion near the middle is −2.4/height.
+    for (height, expected, bound) in [
+        (1.0, 4.750e-7, 5e-11),
+        (0.1, 1.360e-7, 5e-11),
+        (0.01, 1.378e-8, 5e-12),
+        (1e-4, 1.378e-10, 1e-13),
+        (1e-8, 1.3e-14, 1e-13),
+        (0.0, 0.0, 1e-14),
+    ] {
+        let curve = Bezier::s_curve(height);
+        let error = |segments: usize| {
+            let spine = Spine::sample(&curve, segments).unwrap();
+            let reference = orthogonal_reference(DVec3::Z, spine.tangent(0)).unwrap();
+            let exact = exact_frames(&curve, &uniform_parameters(&curve, segments), reference).unwrap();
+            let frames = carry(&spine, reference, FrameMethod::DoubleReflection);
+            frames.iter().zip(&exact).map(|(frame, exact)| exact.angle_to(frame.r).abs()).fold(0.0, f64::max)
+        };
+        assert!((error(64) - expected).abs() < bound, "height {height}: {:e} against {expected:e}", error(64));
+        if height > 1e-3 {
+            let ratio = error(128) / error(64);
+            assert!((ratio - 0.0625).abs() < 2e-3, "fourth order at height {height}: {ratio}");
+        }
+    }
+    let spine = Spine::sample(&Bezier::s_curve(0.01), 64).unwrap();
+    let last = carry(&spine, DVec3::Z, FrameMethod::DoubleReflection)[64];
+    assert!(last.r.distance(DVec3::new(0.0, -0.024223273733433, 0.99970657345525)) < 1e-14, "{}", last.r);
+}
+
+#[test]
+fn degenerate_segments_are_refused_or_rotated() {
+    let frames = |spine: &Spine, degenerate| {
+        rotation_minimizing_frames(spine, DVec3::Z, FrameMethod::DoubleReflection, degenerate)
+    };
+    // One reversed tangent among good ones.
+    let good = Spine::sample(&TrigonometricCurve::helix(1.0, 0.2, (0.0, 3.0)), 30).unwrap();
+    let mut tangents = good.tangents().to_vec();
+    tangents[12] = -tangents[12];
+    let reversed = Spine::new(good.points().to_vec(), tangents, false).unwrap();
+    let refused = frames(&reversed, DegenerateSegment::Refuse);
+    assert_eq!(refused.unwrap_err(), FrameError::DegenerateSegment { segment: 11 });
+    // The chord is normal to both equal tangents.
+    let step = Spine::new(vec![DVec3::ZERO, DVec3::X], vec![DVec3::Y; 2], false).unwrap();
+    assert_eq!(frames(&step, DegenerateSegment::Refuse).unwrap_err(), FrameError::DegenerateSegment { segment: 0 });
+    let rotated = frames(&step, DegenerateSegment::Rotate).unwrap();
+    assert_eq!((rotated.substituted, rotated.stations[1].r), (vec![0], DVec3::Z));
+    // A cusp turns back.
+    let cusp = Spine::new(vec![DVec3::ZERO, DVec3::X], vec![DVec3::X, -DVec3::X], false).unwrap();
+    assert_eq!(frames(&cusp, DegenerateSegment::Rotate).unwrap_err(), FrameError::OppositeTangents { segment: 0 });
+}
+
+#[test]
+fn repeated_points_take_the_smallest_rotation() {
+    let points = vec![DVec3::ZERO, DVec3::X, DVec3::X, DVec3::new(1.0, 1.0, 0.0)];
+    let spine = Spine::new(points, vec![DVec3::X, DVec3::X, DVec3::Y, DVec3::Y], false).unwrap();
+    for method in [FrameMethod::DoubleReflection, FrameMethod::Projection] {
+        let frames = rotation_minimizing_frames(&spine, DVec3::Y, method, DegenerateSegment::Refuse).unwrap();
+        assert_eq!(frames.substituted, [1]);
+        assert!(frames.stations[3].r.distance(-DVec3::X) < 1e-15, "the corner is turned in its plane");
+    }
+}
+
+#[test]
+fn references_along_the_tangent_are_refused() {
+    let spine = Spine::sample(&TrigonometricCurve::helix(1.0, 0.2, (0.0, 3.0)), 9).unwrap();
+    for bad in [spine.tangent(0) * 3.0, DVec3::ZERO, DVec3::NAN, DVec3::splat(f64::INFINITY)] {
+        let refused = rotation_minimizing_frames(&spine, bad, FrameMethod::DoubleReflection, DegenerateSegment::Refuse);
+        assert_eq!(refused.unwrap_err(), FrameError::Reference, "{bad}");
+    }
+}
+
+proptest! {
+    /// Whatever the samples, the result is an error or orthonormal right-handed frames.
+    #[test]
+    fn frames_are_orthonormal_or_refused(
+        coordinates in prop::collection::vec(-3.0..3.0f64, 30),
+        reference in prop::array::uniform3(-1.0..1.0f64),
+        closed: bool,
+        method in prop::sample::select(vec![
+            FrameMethod::DoubleReflection,
+            FrameMethod::Projection,
+            FrameMethod::Rotation,
+            FrameMethod::TangentsOnly,
+        ]),
+    ) {
+        let vectors: Vec<DVec3> = coordinates.chunks(3).map(DVec3::from_slice).collect();
+        let Ok(spine) = Spine::new(vectors[..5].to_vec(), vectors[5..].to_vec(), closed) else { return Ok(()) };
+        let reference = DVec3::from_array(reference);
+        if let Ok(frames) = rotation_minimizing_frames(&spine, reference, method, DegenerateSegment::Rotate) {
+            prop_assert_eq!(frames.stations.len(), spine.segments() + 1);
+            for frame in frames.stations {
+                // Reflections amplify rounding by up to 1/√(c₂/4) = 10 a step; a nearly parallel reference by 1e10 at worst
+                // is removed by its second pass.
+                prop_assert!((frame.r.length() - 1.0).abs() < 1e-12);
+                prop_assert!(frame.r.dot(frame.t).abs() < 1e-10);
+                prop_assert!((frame.r.cross(frame.s) - frame.t).length() < 1e-10);
+            }
+        }
+    }
+}
