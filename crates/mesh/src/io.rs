@@ -4,9 +4,15 @@
 //! What a format can hold decides what survives: see [`Format`].
 
 mod format;
+mod gltf;
 mod obj;
+mod off;
+mod ply;
 mod polygon;
 mod read_error;
+mod split;
+mod stl;
+mod text;
 mod write_error;
 
 use std::io::Write;
@@ -46,16 +52,50 @@ pub fn read_bytes(format: Format, bytes: &[u8]) -> Result<TriMesh, ParseError> {
 /// Gives the bytes of a file that another one refers to, by its path relative to that one.
 type Resolve<'a> = &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>;
 
-fn parse(format: Format, bytes: &[u8], _resolve: Resolve<'_>) -> Result<TriMesh, ParseError> {
+fn parse(format: Format, bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, ParseError> {
     let mesh = match format {
         Format::Obj => obj::parse(bytes)?,
-        _ => return Err(ParseError::Malformed("reading this format is not there yet".into())),
+        Format::Ply => ply::parse(bytes)?,
+        Format::Stl => stl::parse(bytes)?,
+        Format::Off => off::parse(bytes)?,
+        // Which of the two it is, the bytes tell.
+        Format::Gltf | Format::Glb => gltf::parse(bytes, resolve)?,
     };
     if mesh.triangles.is_empty() {
         return Err(ParseError::Empty);
     }
     mesh.check_valid()?;
+    check_attributes(&mesh)?;
     Ok(mesh)
+}
+
+/// What is interpolated must be finite, or one bad number would spread.
+fn check_attributes(mesh: &TriMesh) -> Result<(), ParseError> {
+    fn first_bad<T>(corners: &[[T; 3]], is_finite: impl Fn(&T) -> bool) -> Option<usize> {
+        corners.iter().position(|corners| !corners.iter().all(&is_finite))
+    }
+    let corner = &mesh.corner;
+    let by_triangle = [
+        ("texture coordinate", corner.uvs.iter().find_map(|set| first_bad(set, |uv| uv.is_finite()))),
+        ("normal", first_bad(&corner.normals, |normal| normal.is_finite())),
+        ("color", first_bad(&corner.colors, |color| color.is_finite())),
+    ];
+    for (attribute, triangle) in by_triangle {
+        if let Some(triangle) = triangle {
+            return Err(ParseError::NonFinite { attribute, element: "triangle", number: triangle });
+        }
+    }
+    let is_bad_skin = |skin: &Vec<(u32, f64)>| skin.iter().any(|(_, weight)| !weight.is_finite());
+    let by_vertex = [
+        ("color", mesh.vertex.colors.iter().position(|color| !color.is_finite())),
+        ("skin weight", mesh.vertex.skin.iter().position(is_bad_skin)),
+    ];
+    for (attribute, vertex) in by_vertex {
+        if let Some(vertex) = vertex {
+            return Err(ParseError::NonFinite { attribute, element: "vertex", number: vertex });
+        }
+    }
+    Ok(())
 }
 
 /// Writes `mesh` to `path`, in the format of its extension, whole or not at all: into a temporary file in the same
@@ -94,7 +134,11 @@ pub fn write_to(format: Format, mesh: &TriMesh, writer: &mut dyn Write) -> Resul
 fn write_format(format: Format, mesh: &TriMesh, writer: &mut dyn Write) -> std::io::Result<()> {
     match format {
         Format::Obj => obj::write(mesh, writer),
-        _ => Err(std::io::ErrorKind::Unsupported.into()),
+        Format::Ply => ply::write(mesh, writer),
+        Format::Stl => stl::write(mesh, writer),
+        Format::Off => off::write(mesh, writer),
+        Format::Gltf => gltf::write_json(mesh, writer),
+        Format::Glb => gltf::write_binary(mesh, writer),
     }
 }
 

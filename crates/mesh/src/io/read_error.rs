@@ -48,6 +48,16 @@ pub enum ParseError {
     /// The mesh that the file describes.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// An attribute that is infinite or not a number.
+    #[error("a {attribute} of {element} {number} is not finite")]
+    NonFinite {
+        /// The attribute.
+        attribute: &'static str,
+        /// What it belongs to: a triangle or a vertex.
+        element: &'static str,
+        /// Its number, counted from zero.
+        number: usize,
+    },
     /// A face of a format without lines.
     #[error("face {face} names vertex {index}, but the file has {vertices} vertices")]
     IndexOutOfRange {
@@ -91,6 +101,9 @@ pub enum LineProblem {
     /// A face that is no polygon.
     #[error("a face needs at least three corners, {0} found")]
     TooFewCorners(usize),
+    /// A loop of an STL facet that has not three vertices.
+    #[error("a facet needs exactly three vertices")]
+    NotATriangle,
     /// An index that points nowhere.
     #[error("{kind} {index} is out of range: there are {count}")]
     IndexOutOfRange {

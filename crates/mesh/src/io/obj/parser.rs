@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 
 use crate::TriMesh;
 use crate::io::polygon::triangulate;
+use crate::io::text::{Words, at_line, parse_integer, read_numbers, text};
 use crate::io::{LineProblem, ParseError};
 
 /// Reads OBJ: `v` with optional color, `vt`, `vn`, `f`, `usemtl` and `mtllib`; other statements are passed over.
@@ -17,7 +18,7 @@ pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let mut rest = bytes;
     while !rest.is_empty() {
         let (statement, lines) = split_statement(&mut rest);
-        obj.read_statement(statement, line + 1).map_err(|problem| ParseError::Line { line: line + 1, problem })?;
+        obj.read_statement(statement, line + 1).map_err(at_line(line + 1))?;
         line += lines;
     }
     Ok(obj.into_mesh()?.welded_at_boundary())
@@ -185,7 +186,7 @@ impl Obj {
             start = face.corners_end;
             for corner in corners {
                 check_range(corner, [mesh.positions.len(), self.uvs.len(), self.normals.len()])
-                    .map_err(|problem| ParseError::Line { line: face.line, problem })?;
+                    .map_err(at_line(face.line))?;
             }
             polygon.clear();
             polygon.extend(corners.iter().map(|corner| mesh.positions[corner.position as usize - 1]));
@@ -226,64 +227,4 @@ fn check_range(corner: &Corner, counts: [usize; 3]) -> Result<(), LineProblem> {
         }
     }
     Ok(())
-}
-
-/// Words between spaces; a backslash joins lines and so is a space too.
-struct Words<'a> {
-    rest: &'a [u8],
-}
-
-impl<'a> Iterator for Words<'a> {
-    type Item = &'a [u8];
-
-    fn next(&mut self) -> Option<&'a [u8]> {
-        let is_space = |byte: &u8| byte.is_ascii_whitespace() || *byte == b'\\';
-        let start = self.rest.iter().position(|byte| !is_space(byte))?;
-        let word = &self.rest[start..];
-        let end = word.iter().position(is_space).unwrap_or(word.len());
-        self.rest = &word[end..];
-        Some(&word[..end])
-    }
-}
-
-/// Up to `N` finite numbers, and how many there are; words after them are passed over.
-fn read_numbers<const N: usize>(words: Words<'_>, expected: usize) -> Result<([f64; N], usize), LineProblem> {
-    let mut numbers = [0.0; N];
-    let mut found = 0;
-    for word in words.take(N) {
-        if word[0] == b'#' {
-            break;
-        }
-        let number = fast_float2::parse::<f64, _>(word).ok().filter(|number| number.is_finite());
-        numbers[found] = number.ok_or_else(|| LineProblem::NotANumber(text(word)))?;
-        found += 1;
-    }
-    if found < expected {
-        return Err(LineProblem::TooFewNumbers { expected, found });
-    }
-    Ok((numbers, found))
-}
-
-fn parse_integer(word: &[u8]) -> Option<i64> {
-    let (digits, sign) = match word.strip_prefix(b"-") {
-        Some(digits) => (digits, -1),
-        None => (word, 1),
-    };
-    // Ten digits hold every 32-bit index and cannot overflow the sum.
-    if digits.is_empty() || digits.len() > 10 {
-        return None;
-    }
-    let mut value = 0;
-    for &digit in digits {
-        let digit = digit.wrapping_sub(b'0');
-        if digit > 9 {
-            return None;
-        }
-        value = 10 * value + i64::from(digit);
-    }
-    Some(sign * value)
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes.trim_ascii()).into_owned()
 }

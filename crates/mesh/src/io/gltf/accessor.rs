@@ -1,0 +1,133 @@
+//! Numbers out of buffers.
+//!
+//! The library's own iterators take offsets and counts on trust and panic where those are wrong.
+
+use ::gltf::json::Accessor;
+use ::gltf::json::accessor::ComponentType;
+use ::gltf::json::validation::Checked;
+
+use super::document::{Document, malformed};
+use crate::io::ParseError;
+
+/// Most elements of an accessor that has no bytes behind it. Larger, and a file of a few bytes could ask for all
+/// memory; smaller, and sparse accessors of large meshes are refused.
+const MAX_IMPLICIT_COUNT: usize = 1 << 26;
+
+/// Where an accessor's elements lie.
+struct Layout<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    count: usize,
+}
+
+impl Document {
+    /// Number of components of an accessor's elements.
+    pub(super) fn components(&self, index: usize) -> Result<usize, ParseError> {
+        match self.accessor(index)?.type_ {
+            Checked::Valid(kind) => Ok(kind.multiplicity()),
+            Checked::Invalid => Err(malformed(format!("accessor {index} has an unknown type"))),
+        }
+    }
+
+    /// Elements of `N` components each, normalized integers turned to fractions.
+    pub(super) fn vectors<const N: usize>(&self, index: usize) -> Result<Vec<[f64; N]>, ParseError> {
+        let accessor = self.accessor(index)?;
+        if self.components(index)? != N {
+            return Err(malformed(format!("accessor {index} should have {N} components")));
+        }
+        let (component, size) = self.component(index)?;
+        let decode = |bytes: &[u8]| -> [f64; N] {
+            std::array::from_fn(|i| number(component, accessor.normalized, &bytes[i * size..]))
+        };
+        let mut vectors = match accessor.buffer_view {
+            Some(view) => {
+                let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
+                let layout = self.layout(index, view.value(), offset, accessor.count.0, N * size)?;
+                (0..layout.count).map(|i| decode(&layout.bytes[i * layout.stride..])).collect()
+            }
+            None => match usize::try_from(accessor.count.0) {
+                Ok(count) if count <= MAX_IMPLICIT_COUNT => vec![[0.0; N]; count],
+                _ => return Err(malformed(format!("accessor {index} has too many elements without data"))),
+            },
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let Checked::Valid(kind) = sparse.indices.component_type else {
+                return Err(malformed(format!("accessor {index} has sparse indices of an unknown type")));
+            };
+            let index_size = kind.0.size();
+            let indices = (sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0);
+            let indices = self.layout(index, indices.0, indices.1, sparse.count.0, index_size)?;
+            let values = (sparse.values.buffer_view.value(), sparse.values.byte_offset.0);
+            let values = self.layout(index, values.0, values.1, sparse.count.0, N * size)?;
+            for i in 0..indices.count {
+                let target = number(kind.0, false, &indices.bytes[i * indices.stride..]) as usize;
+                let slot = vectors.get_mut(target);
+                *slot.ok_or_else(|| malformed(format!("accessor {index} has a sparse index out of range")))? =
+                    decode(&values.bytes[i * values.stride..]);
+            }
+        }
+        Ok(vectors)
+    }
+
+    /// Whole numbers, one an element.
+    pub(super) fn indices(&self, index: usize) -> Result<Vec<u32>, ParseError> {
+        match self.component(index)?.0 {
+            ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => {
+                Ok(self.vectors::<1>(index)?.into_iter().map(|[value]| value as u32).collect())
+            }
+            _ => Err(malformed(format!("accessor {index} should hold unsigned integers"))),
+        }
+    }
+
+    fn accessor(&self, index: usize) -> Result<&Accessor, ParseError> {
+        self.root.accessors.get(index).ok_or_else(|| malformed(format!("accessor {index} does not exist")))
+    }
+
+    fn component(&self, index: usize) -> Result<(ComponentType, usize), ParseError> {
+        match self.accessor(index)?.component_type {
+            Checked::Valid(kind) => Ok((kind.0, kind.0.size())),
+            Checked::Invalid => Err(malformed(format!("accessor {index} has an unknown component type"))),
+        }
+    }
+
+    /// Makes sure that all elements lie in their buffer view.
+    fn layout(
+        &self,
+        accessor: usize,
+        view: usize,
+        offset: u64,
+        count: u64,
+        size: usize,
+    ) -> Result<Layout<'_>, ParseError> {
+        let (bytes, stride) = self.view(view)?;
+        let stride = stride.unwrap_or(size);
+        let beyond = || malformed(format!("accessor {accessor} reaches beyond buffer view {view}"));
+        let bytes = usize::try_from(offset).ok().and_then(|offset| bytes.get(offset..)).ok_or_else(beyond)?;
+        let count = usize::try_from(count).map_err(|_| beyond())?;
+        let Some(last) = count.checked_sub(1) else {
+            return Ok(Layout { bytes: &[], stride, count });
+        };
+        // A stride of zero would let a few bytes stand for any number of elements.
+        let end = last.checked_mul(stride).and_then(|start| start.checked_add(size));
+        match end {
+            Some(end) if end <= bytes.len() && stride >= size => Ok(Layout { bytes, stride, count }),
+            _ => Err(beyond()),
+        }
+    }
+}
+
+fn number(component: ComponentType, is_normalized: bool, bytes: &[u8]) -> f64 {
+    let (value, full) = match component {
+        ComponentType::I8 => (f64::from(bytes[0] as i8), f64::from(i8::MAX)),
+        ComponentType::U8 => (f64::from(bytes[0]), f64::from(u8::MAX)),
+        ComponentType::I16 => (f64::from(i16::from_le_bytes([bytes[0], bytes[1]])), f64::from(i16::MAX)),
+        ComponentType::U16 => (f64::from(u16::from_le_bytes([bytes[0], bytes[1]])), f64::from(u16::MAX)),
+        ComponentType::U32 => {
+            (f64::from(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])), f64::from(u32::MAX))
+        }
+        ComponentType::F32 => {
+            return f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
+        }
+    };
+    if is_normalized { (value / full).max(-1.0) } else { value }
+}

@@ -1,0 +1,268 @@
+//! Reading glTF.
+
+use std::sync::Arc;
+
+use ::gltf::json::mesh::{Mode, Primitive, Semantic};
+use ::gltf::json::validation::Checked;
+use glam::{DMat3, DVec2, DVec3, DVec4};
+use serde_json::Value;
+
+use super::document::{Document, malformed};
+use super::scene::Instance;
+use crate::io::{ParseError, Resolve};
+use crate::{CornerAttributes, TriMesh, VertexAttributes};
+
+/// Reads the scene of a document as one mesh; equal positions become one vertex.
+pub(in crate::io) fn parse(bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, ParseError> {
+    let document = Document::open(bytes, resolve)?;
+    let instances = document.instances()?;
+    let skin = common_skin(&instances);
+    let mut soup = Soup::default();
+    for instance in &instances {
+        soup.add_instance(&document, instance, skin.is_some())?;
+    }
+    let mut mesh = soup.into_mesh(&document.json).welded();
+    mesh.assets.gltf = document.carried_assets(skin, resolve)?.map(Arc::new);
+    Ok(mesh)
+}
+
+/// The skin of all instances, if they have the same one.
+fn common_skin(instances: &[Instance]) -> Option<usize> {
+    let first = instances.first()?.skin;
+    if instances.iter().all(|instance| instance.skin == first) { first } else { None }
+}
+
+/// Vertices with all their attributes, split at seams as the file has them.
+#[derive(Default)]
+struct Soup {
+    positions: Vec<DVec3>,
+    normals: Vec<Option<DVec3>>,
+    uvs: Vec<Vec<DVec2>>,
+    colors: Vec<Option<DVec4>>,
+    influences: Vec<Vec<(u32, f64)>>,
+    triangles: Vec<[u32; 3]>,
+    materials: Vec<Option<u32>>,
+}
+
+/// A primitive's attributes by meaning, as numbers of accessors.
+#[derive(Default, PartialEq)]
+struct Attributes {
+    positions: Option<usize>,
+    normals: Option<usize>,
+    colors: Option<usize>,
+    uvs: Vec<usize>,
+    joints: Vec<usize>,
+    weights: Vec<usize>,
+}
+
+impl Attributes {
+    fn of(primitive: &Primitive) -> Self {
+        let mut attributes = Self::default();
+        // Semantics come in ascending order, so sets are pushed in theirs.
+        for (semantic, accessor) in &primitive.attributes {
+            let accessor = accessor.value();
+            match semantic {
+                Checked::Valid(Semantic::Positions) => attributes.positions = Some(accessor),
+                Checked::Valid(Semantic::Normals) => attributes.normals = Some(accessor),
+                Checked::Valid(Semantic::Colors(0)) => attributes.colors = Some(accessor),
+                Checked::Valid(Semantic::TexCoords(_)) => attributes.uvs.push(accessor),
+                Checked::Valid(Semantic::Joints(_)) => attributes.joints.push(accessor),
+                Checked::Valid(Semantic::Weights(_)) => attributes.weights.push(accessor),
+                _ => {}
+            }
+        }
+        attributes
+    }
+}
+
+impl Soup {
+    fn add_instance(&mut self, document: &Document, instance: &Instance, with_skin: bool) -> Result<(), ParseError> {
+        let number = instance.mesh;
+        let mesh = document.root.meshes.get(number);
+        let mesh = mesh.ok_or_else(|| malformed(format!("mesh {number} does not exist")))?;
+        // Primitives of several materials often share their vertices.
+        let mut added: Vec<(Attributes, usize)> = Vec::new();
+        for primitive in &mesh.primitives {
+            let mode = match primitive.mode {
+                Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
+                Checked::Valid(_) => continue,
+                Checked::Invalid => return Err(malformed(format!("mesh {number} has a primitive of unknown mode"))),
+            };
+            let attributes = Attributes::of(primitive);
+            let base = match added.iter().find(|(known, _)| *known == attributes) {
+                Some(&(_, base)) => base,
+                None => {
+                    let base = self.positions.len();
+                    self.add_vertices(document, &attributes, instance, with_skin)?;
+                    added.push((attributes, base));
+                    base
+                }
+            };
+            let indices = match primitive.indices {
+                Some(accessor) => document.indices(accessor.value())?,
+                None => (0..(self.positions.len() - base) as u32).collect(),
+            };
+            self.add_triangles(&indices, mode, base, primitive, instance)?;
+        }
+        Ok(())
+    }
+
+    fn add_vertices(
+        &mut self,
+        document: &Document,
+        attributes: &Attributes,
+        instance: &Instance,
+        with_skin: bool,
+    ) -> Result<(), ParseError> {
+        let number = instance.mesh;
+        let accessor = attributes.positions;
+        let accessor = accessor.ok_or_else(|| malformed(format!("mesh {number} has a primitive without positions")))?;
+        let positions = document.vectors::<3>(accessor)?;
+        let base = self.positions.len();
+        let count = positions.len();
+        let expect = |found: usize| match found == count {
+            true => Ok(()),
+            false => Err(malformed(format!("mesh {number} has {count} positions but {found} values of an attribute"))),
+        };
+        if base + count > u32::MAX as usize {
+            return Err(malformed("the scene has more vertices than 32-bit indices can name"));
+        }
+        let to_world = instance.world_from_mesh;
+        self.positions.extend(positions.into_iter().map(|p| to_world.transform_point3(DVec3::from_array(p))));
+
+        self.normals.resize(base + count, None);
+        if let Some(accessor) = attributes.normals {
+            let normals = document.vectors::<3>(accessor)?;
+            expect(normals.len())?;
+            // Normals are covectors: they follow the inverse transpose, here up to a positive factor.
+            let linear = DMat3::from_mat4(to_world);
+            let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+            let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * linear.determinant().signum();
+            for (slot, normal) in self.normals[base..].iter_mut().zip(normals) {
+                let normal = DVec3::from_array(normal);
+                *slot = match to_world == glam::DMat4::IDENTITY {
+                    true => Some(normal),
+                    false => (cofactors * normal).try_normalize(),
+                };
+            }
+        }
+        for (set, &accessor) in attributes.uvs.iter().enumerate() {
+            let uvs = document.vectors::<2>(accessor)?;
+            expect(uvs.len())?;
+            if self.uvs.len() <= set {
+                self.uvs.push(Vec::new());
+            }
+            self.uvs[set].resize(base, DVec2::ZERO);
+            self.uvs[set].extend(uvs.into_iter().map(DVec2::from_array));
+        }
+        self.uvs.iter_mut().for_each(|set| set.resize(base + count, DVec2::ZERO));
+
+        self.colors.resize(base + count, None);
+        if let Some(accessor) = attributes.colors {
+            let colors: Vec<DVec4> = match document.components(accessor)? {
+                3 => document.vectors::<3>(accessor)?.into_iter().map(|[r, g, b]| DVec4::new(r, g, b, 1.0)).collect(),
+                _ => document.vectors::<4>(accessor)?.into_iter().map(DVec4::from_array).collect(),
+            };
+            expect(colors.len())?;
+            self.colors[base..].iter_mut().zip(colors).for_each(|(slot, color)| *slot = Some(color));
+        }
+        self.influences.resize(base + count, Vec::new());
+        if with_skin {
+            for (&joints, &weights) in attributes.joints.iter().zip(&attributes.weights) {
+                let (joints, weights) = (document.vectors::<4>(joints)?, document.vectors::<4>(weights)?);
+                expect(joints.len())?;
+                expect(weights.len())?;
+                for ((influences, joints), weights) in self.influences[base..].iter_mut().zip(joints).zip(weights) {
+                    let used = joints.into_iter().zip(weights).filter(|&(_, weight)| weight > 0.0);
+                    influences.extend(used.map(|(joint, weight)| (joint as u32, weight)));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn add_triangles(
+        &mut self,
+        indices: &[u32],
+        mode: Mode,
+        base: usize,
+        primitive: &Primitive,
+        instance: &Instance,
+    ) -> Result<(), ParseError> {
+        let vertices = self.positions.len() - base;
+        let mut local: Vec<[u32; 3]> = match mode {
+            Mode::TriangleStrip => {
+                let turn = |(i, t): (usize, &[u32])| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
+                indices.windows(3).enumerate().map(turn).collect()
+            }
+            Mode::TriangleFan => indices.windows(2).skip(1).map(|t| [indices[0], t[0], t[1]]).collect(),
+            _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+        };
+        // Strips are joined by triangles that name a vertex twice.
+        local.retain(|&[a, b, c]| a != b && b != c && c != a);
+        if let Some(&index) = local.iter().flatten().find(|&&index| index as usize >= vertices) {
+            let number = instance.mesh;
+            return Err(malformed(format!("mesh {number} names vertex {index}, but the primitive has {vertices}")));
+        }
+        // A mirroring node turns the triangles over.
+        if instance.world_from_mesh.determinant() < 0.0 {
+            local.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        self.triangles.extend(local.into_iter().map(|triangle| triangle.map(|vertex| vertex + base as u32)));
+        let material = primitive.material.map(|material| material.value() as u32);
+        self.materials.resize(self.triangles.len(), material);
+        Ok(())
+    }
+
+    fn into_mesh(self, json: &Value) -> TriMesh {
+        let normals = match self.normals.iter().any(Option::is_some) {
+            false => Vec::new(),
+            true => self
+                .triangles
+                .iter()
+                .map(|triangle| {
+                    let [a, b, c] = triangle.map(|vertex| self.positions[vertex as usize]);
+                    // Without normals a mesh is shaded flat, says the format.
+                    let flat = (b - a).cross(c - a).normalize_or_zero();
+                    triangle.map(|vertex| self.normals[vertex as usize].unwrap_or(flat))
+                })
+                .collect(),
+        };
+        let uvs = self.uvs.iter().map(|set| self.triangles.iter().map(|t| t.map(|v| set[v as usize])).collect());
+        let colors = match self.colors.iter().any(Option::is_some) {
+            true => self.colors.iter().map(|color| color.unwrap_or(DVec4::ONE)).collect(),
+            false => Vec::new(),
+        };
+        let has_skin = self.influences.iter().any(|influences| !influences.is_empty());
+        let (materials, triangle_materials) = name_materials(json, &self.materials);
+        TriMesh {
+            corner: CornerAttributes { uvs: uvs.collect(), normals, colors: Vec::new() },
+            vertex: VertexAttributes { colors, skin: if has_skin { self.influences } else { Vec::new() } },
+            positions: self.positions,
+            triangles: self.triangles,
+            materials,
+            triangle_materials,
+            ..TriMesh::default()
+        }
+    }
+}
+
+/// Names of the document's materials, with the unnamed one after them where some triangles have none.
+fn name_materials(json: &Value, materials: &[Option<u32>]) -> (Vec<String>, Vec<u32>) {
+    let listed = json.get("materials").and_then(Value::as_array).map_or([].as_slice(), Vec::as_slice);
+    let known = |material: &Option<u32>| material.filter(|&material| (material as usize) < listed.len());
+    if !materials.iter().any(|material| known(material).is_some()) {
+        return (Vec::new(), Vec::new());
+    }
+    let name = |(number, material): (usize, &Value)| match material.get("name").and_then(Value::as_str) {
+        Some(name) if !name.is_empty() => name.to_owned(),
+        _ => format!("material{number}"),
+    };
+    let mut names: Vec<String> = listed.iter().enumerate().map(name).collect();
+    let none = names.len() as u32;
+    let numbers: Vec<u32> = materials.iter().map(|material| known(material).unwrap_or(none)).collect();
+    if numbers.contains(&none) {
+        names.push(String::new());
+    }
+    (names, numbers)
+}

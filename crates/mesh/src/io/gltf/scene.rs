@@ -1,0 +1,78 @@
+//! Which meshes a document shows, and where.
+
+use ::gltf::json::scene::Node;
+use glam::{DMat4, DQuat, DVec3};
+
+use super::document::{Document, malformed};
+use crate::io::ParseError;
+
+/// A use of a mesh.
+pub(super) struct Instance {
+    pub(super) mesh: usize,
+    pub(super) skin: Option<usize>,
+    /// Identity for a skinned mesh, which its joints alone place.
+    pub(super) world_from_mesh: DMat4,
+}
+
+impl Document {
+    /// The meshes of the default scene in the order of its nodes, or of all nodes where there is no scene, or all meshes
+    /// where there are no nodes either.
+    pub(super) fn instances(&self) -> Result<Vec<Instance>, ParseError> {
+        let nodes = &self.root.nodes;
+        if nodes.is_empty() {
+            let place = |mesh| Instance { mesh, skin: None, world_from_mesh: DMat4::IDENTITY };
+            return Ok((0..self.root.meshes.len()).map(place).collect());
+        }
+        let mut instances = Vec::new();
+        let mut is_visited = vec![false; nodes.len()];
+        let mut waiting: Vec<(usize, DMat4)> = self.root_nodes()?.into_iter().map(|n| (n, DMat4::IDENTITY)).collect();
+        waiting.reverse();
+        while let Some((number, world_from_parent)) = waiting.pop() {
+            let node = nodes.get(number).ok_or_else(|| malformed(format!("node {number} does not exist")))?;
+            if std::mem::replace(&mut is_visited[number], true) {
+                return Err(malformed(format!("node {number} has several parents")));
+            }
+            let world_from_node = world_from_parent * local_transform(node);
+            if let Some(mesh) = node.mesh {
+                let skin = node.skin.map(|skin| skin.value());
+                let world_from_mesh = if skin.is_some() { DMat4::IDENTITY } else { world_from_node };
+                instances.push(Instance { mesh: mesh.value(), skin, world_from_mesh });
+            }
+            let children = node.children.iter().flatten().rev();
+            waiting.extend(children.map(|child| (child.value(), world_from_node)));
+        }
+        Ok(instances)
+    }
+
+    pub(super) fn root_nodes(&self) -> Result<Vec<usize>, ParseError> {
+        let default = self.root.scene.map(|scene| scene.value());
+        if let Some(scene) = self.root.scenes.get(default.unwrap_or(0)) {
+            return Ok(scene.nodes.iter().map(|node| node.value()).collect());
+        }
+        if let Some(scene) = default {
+            return Err(malformed(format!("scene {scene} does not exist")));
+        }
+        let mut is_child = vec![false; self.root.nodes.len()];
+        for child in self.root.nodes.iter().filter_map(|node| node.children.as_ref()).flatten() {
+            if let Some(is_child) = is_child.get_mut(child.value()) {
+                *is_child = true;
+            }
+        }
+        Ok((0..is_child.len()).filter(|&node| !is_child[node]).collect())
+    }
+}
+
+fn local_transform(node: &Node) -> DMat4 {
+    if let Some(matrix) = node.matrix {
+        return DMat4::from_cols_array(&matrix.map(f64::from));
+    }
+    let vector = |values: [f32; 3]| DVec3::from_array(values.map(f64::from));
+    let rotation = node.rotation.map_or(DQuat::IDENTITY, |quaternion| {
+        let quaternion = DQuat::from_array(quaternion.0.map(f64::from));
+        // Single precision leaves a length a little off one, which would scale the mesh.
+        if quaternion.length_squared() > 0.0 { quaternion.normalize() } else { DQuat::IDENTITY }
+    });
+    let scale = node.scale.map_or(DVec3::ONE, vector);
+    let translation = node.translation.map_or(DVec3::ZERO, vector);
+    DMat4::from_scale_rotation_translation(scale, rotation, translation)
+}

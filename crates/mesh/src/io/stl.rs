@@ -1,0 +1,95 @@
+//! STL, both kinds.
+//!
+//! Read here rather than by a library for three files that are common: binary ones whose header begins with `solid`,
+//! text ones with several solids, and broken ones, whose error should name the line.
+
+use std::io::{self, Write};
+
+use glam::DVec3;
+
+use super::text::{at_line, numbered_lines, read_numbers};
+use super::{LineProblem, ParseError};
+use crate::TriMesh;
+
+/// Bytes before the triangles of a binary file: a free text and their number.
+const HEADER: usize = 84;
+/// Bytes of a triangle of a binary file: normal, corners and two bytes of attributes.
+const RECORD: usize = 50;
+
+/// Reads STL. Equal positions become one vertex; coordinates of text files keep their double precision.
+pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
+    let count =
+        bytes.get(80..HEADER).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
+    let expected = count.map(|count| HEADER + RECORD * count);
+    // The size decides, because the header of a binary file may say anything.
+    let positions = if expected == Some(bytes.len()) {
+        parse_binary(&bytes[HEADER..])
+    } else if bytes.trim_ascii_start().starts_with(b"solid") {
+        parse_text(bytes)?
+    } else {
+        return match expected {
+            Some(expected) if expected < bytes.len() => Ok(soup(parse_binary(&bytes[HEADER..expected]))),
+            Some(expected) => Err(ParseError::Malformed(format!(
+                "the file is truncated: {expected} bytes announced, {} found",
+                bytes.len()
+            ))),
+            None => Err(ParseError::Malformed("the file is truncated in its header".into())),
+        };
+    };
+    Ok(soup(positions))
+}
+
+fn parse_binary(records: &[u8]) -> Vec<DVec3> {
+    let coordinate = |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
+    let corner = |bytes: &[u8]| DVec3::new(coordinate(&bytes[0..]), coordinate(&bytes[4..]), coordinate(&bytes[8..]));
+    records.chunks_exact(RECORD).flat_map(|record| record[12..48].chunks_exact(12).map(corner)).collect()
+}
+
+/// Corners of all facets of all solids. Only `vertex` and the ends of loops matter.
+fn parse_text(bytes: &[u8]) -> Result<Vec<DVec3>, ParseError> {
+    let mut positions = Vec::new();
+    let mut last_line = 0;
+    for (line, mut words) in numbered_lines(bytes) {
+        last_line = line;
+        match words.next().unwrap_or_default() {
+            b"vertex" => {
+                let (numbers, _) = read_numbers::<3>(words, 3).map_err(at_line(line))?;
+                positions.push(DVec3::from_array(numbers));
+            }
+            b"endloop" if !positions.len().is_multiple_of(3) => {
+                return Err(at_line(line)(LineProblem::NotATriangle));
+            }
+            _ => {}
+        }
+    }
+    match positions.len().is_multiple_of(3) {
+        true => Ok(positions),
+        false => Err(at_line(last_line)(LineProblem::NotATriangle)),
+    }
+}
+
+fn soup(positions: Vec<DVec3>) -> TriMesh {
+    let triangles = (0..positions.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    TriMesh::new(positions, triangles).welded()
+}
+
+/// Writes binary STL. The facet normals are those of the triangles as rounded.
+pub(super) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
+    let mut header = [0; 80];
+    header[..8].copy_from_slice(b"isochore");
+    writer.write_all(&header)?;
+    writer.write_all(&(mesh.triangles.len() as u32).to_le_bytes())?;
+    for triangle in &mesh.triangles {
+        let corners = triangle.map(|vertex| mesh.positions[vertex as usize].as_vec3());
+        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+        let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+        let mut record = [0; RECORD];
+        for (bytes, vector) in record.chunks_exact_mut(12).zip([normal, corners[0], corners[1], corners[2]]) {
+            for (bytes, coordinate) in bytes.chunks_exact_mut(4).zip(vector.to_array()) {
+                bytes.copy_from_slice(&coordinate.to_le_bytes());
+            }
+        }
+        writer.write_all(&record)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,145 @@
+//! Words and numbers of the text formats, in and out.
+
+use std::io::{self, Write};
+
+use super::{LineProblem, ParseError};
+
+/// Words between spaces. A backslash joins lines in OBJ and so is a space too.
+pub(super) struct Words<'a> {
+    pub(super) rest: &'a [u8],
+}
+
+impl<'a> Iterator for Words<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let is_space = |byte: &u8| byte.is_ascii_whitespace() || *byte == b'\\';
+        let start = self.rest.iter().position(|byte| !is_space(byte))?;
+        let word = &self.rest[start..];
+        let end = word.iter().position(is_space).unwrap_or(word.len());
+        self.rest = &word[end..];
+        Some(&word[..end])
+    }
+}
+
+/// Lines that hold more than a comment, with their numbers from one.
+pub(super) fn numbered_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Words<'_>)> {
+    bytes.split(|&byte| byte == b'\n').zip(1..).filter_map(|(line, number)| {
+        let text = line.split(|&byte| byte == b'#').next().unwrap_or_default();
+        (!text.trim_ascii().is_empty()).then_some((number, Words { rest: text }))
+    })
+}
+
+/// Up to `N` finite numbers, and how many there are; words after them are passed over.
+pub(super) fn read_numbers<const N: usize>(
+    words: Words<'_>,
+    expected: usize,
+) -> Result<([f64; N], usize), LineProblem> {
+    let mut numbers = [0.0; N];
+    let mut found = 0;
+    for word in words.take(N) {
+        if word[0] == b'#' {
+            break;
+        }
+        let number = fast_float2::parse::<f64, _>(word).ok().filter(|number| number.is_finite());
+        numbers[found] = number.ok_or_else(|| LineProblem::NotANumber(text(word)))?;
+        found += 1;
+    }
+    if found < expected {
+        return Err(LineProblem::TooFewNumbers { expected, found });
+    }
+    Ok((numbers, found))
+}
+
+/// A whole number with an optional minus sign, of ten digits at most.
+pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
+    let (digits, sign) = match word.strip_prefix(b"-") {
+        Some(digits) => (digits, -1),
+        None => (word, 1),
+    };
+    // Ten digits hold every 32-bit index and cannot overflow the sum.
+    if digits.is_empty() || digits.len() > 10 {
+        return None;
+    }
+    let mut value = 0;
+    for &digit in digits {
+        let digit = digit.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        value = 10 * value + i64::from(digit);
+    }
+    Some(sign * value)
+}
+
+/// Bytes of a file as text to show or keep, without the space around it.
+pub(super) fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes.trim_ascii()).into_owned()
+}
+
+/// Attaches a line to what is wrong with it.
+pub(super) fn at_line(line: usize) -> impl Fn(LineProblem) -> ParseError {
+    move |problem| ParseError::Line { line, problem }
+}
+
+/// Bytes gathered before they go to the writer.
+const FLUSH_AT: usize = 1 << 16;
+
+/// Lines of words on their way to a writer.
+pub(super) struct LineWriter<'a> {
+    writer: &'a mut dyn Write,
+    buffer: Vec<u8>,
+}
+
+impl<'a> LineWriter<'a> {
+    pub(super) fn new(writer: &'a mut dyn Write) -> Self {
+        Self { writer, buffer: Vec::with_capacity(FLUSH_AT + 4096) }
+    }
+
+    pub(super) fn push_text(&mut self, text: &str) {
+        self.buffer.extend_from_slice(text.as_bytes());
+    }
+
+    /// The shortest decimal that reads back as the same double; zero for what is not finite and could not be read.
+    pub(super) fn push_number(&mut self, number: f64) {
+        let mut digits = ryu::Buffer::new();
+        let digits = digits.format_finite(if number.is_finite() { number } else { 0.0 });
+        self.push_text(digits.strip_suffix(".0").unwrap_or(digits));
+    }
+
+    /// Each number after a space.
+    pub(super) fn push_numbers(&mut self, numbers: impl IntoIterator<Item = f64>) {
+        for number in numbers {
+            self.buffer.push(b' ');
+            self.push_number(number);
+        }
+    }
+
+    pub(super) fn push_index(&mut self, mut index: u32) {
+        let mut digits = [0; 10];
+        let mut start = digits.len();
+        loop {
+            start -= 1;
+            digits[start] = b'0' + (index % 10) as u8;
+            index /= 10;
+            if index == 0 {
+                break;
+            }
+        }
+        self.buffer.extend_from_slice(&digits[start..]);
+    }
+
+    pub(super) fn end_line(&mut self) -> io::Result<()> {
+        self.buffer.push(b'\n');
+        if self.buffer.len() < FLUSH_AT {
+            return Ok(());
+        }
+        self.writer.write_all(&self.buffer)?;
+        self.buffer.clear();
+        Ok(())
+    }
+
+    pub(super) fn finish(self) -> io::Result<()> {
+        self.writer.write_all(&self.buffer)
+    }
+}

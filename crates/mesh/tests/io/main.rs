@@ -1,0 +1,63 @@
+//! Mesh files read and written.
+
+mod gltf;
+mod obj;
+mod oracles;
+mod ply;
+mod round_trip;
+mod stl_off;
+mod untrusted;
+mod writing;
+
+use glam::{DVec2, DVec3, DVec4};
+use isochore_mesh::io::{self, Format, ParseError};
+use isochore_mesh::{TriMesh, primitives};
+
+const FORMATS: [Format; 6] = [Format::Obj, Format::Gltf, Format::Glb, Format::Ply, Format::Stl, Format::Off];
+
+fn written(format: Format, mesh: &TriMesh) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    io::write_to(format, mesh, &mut bytes).unwrap();
+    bytes
+}
+
+fn reread(format: Format, mesh: &TriMesh) -> TriMesh {
+    io::read_bytes(format, &written(format, mesh)).unwrap()
+}
+
+fn parse(format: Format, text: &str) -> Result<TriMesh, ParseError> {
+    io::read_bytes(format, text.as_bytes())
+}
+
+/// A closed box whose faces are apart in texture space and in shading, of two materials and with vertex colors. All
+/// numbers are multiples of small powers of two, so single precision holds them.
+fn seamed_box() -> TriMesh {
+    let mut mesh = primitives::box_mesh(DVec3::new(1.0, 2.0, 0.5), [2, 1, 4]);
+    let flat = |triangle: usize| {
+        let [a, b, c] = mesh.corners(triangle);
+        (b - a).cross(c - a).normalize().round()
+    };
+    let normals: Vec<DVec3> = (0..mesh.triangles.len()).map(flat).collect();
+    let uv = |position: DVec3, normal: DVec3| {
+        let axis = normal.abs().max_position();
+        DVec2::new(position[(axis + 1) % 3], position[(axis + 2) % 3]) / 8.0 + DVec2::splat(0.5)
+    };
+    let uvs = (0..mesh.triangles.len()).map(|t| mesh.corners(t).map(|position| uv(position, normals[t])));
+    mesh.corner.uvs = vec![uvs.collect()];
+    mesh.corner.normals = normals.iter().map(|&normal| [normal; 3]).collect();
+    mesh.vertex.colors = mesh.positions.iter().map(|p| DVec4::new(p.x.abs() / 4.0, 0.25, 0.5, 1.0)).collect();
+    mesh.materials = vec!["bark".into(), "moss green".into()];
+    mesh.triangle_materials = normals.iter().map(|normal| u32::from(normal.z > 0.5)).collect();
+    // Grouped by material, as glTF has them.
+    let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
+    order.sort_by_key(|&triangle| mesh.triangle_materials[triangle]);
+    permute(&mut mesh.triangles, &order);
+    permute(&mut mesh.triangle_materials, &order);
+    permute(&mut mesh.corner.uvs[0], &order);
+    permute(&mut mesh.corner.normals, &order);
+    mesh
+}
+
+fn permute<T: Copy>(values: &mut Vec<T>, order: &[usize]) {
+    *values = order.iter().map(|&index| values[index]).collect();
+}

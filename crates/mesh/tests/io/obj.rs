@@ -1,0 +1,120 @@
+use isochore_mesh::io::Format;
+use isochore_mesh::{TriMesh, io};
+
+use crate::{parse, reread};
+
+fn parse_obj(text: &str) -> TriMesh {
+    parse(Format::Obj, text).unwrap()
+}
+
+#[test]
+fn attributes_are_read() {
+    let text = "# a tetrahedron\nmtllib a b.mtl\nv 0 0 0 1 0 0\nv 1e-7 0 0 0 .5 0\nv 0 1 0 0 0 1\nv 0 0 1 0 0 0\n\
+                vt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\no part\ng group\ns 1\nusemtl red paint\nf 1/1/1 3/3/1 2/2/1 # face\n\
+                f -4/1/1 -3/2/1 -1/3/1\r\nusemtl blue\nf 1/1/1 4/2/1 3/3/1\nf \\\n2/3/1 3/2/1 \\\r\n4/1/1\nl 1 2 3\n";
+    let mesh = parse_obj(text);
+    assert_eq!(mesh.materials, ["red paint", "blue"]);
+    assert_eq!(mesh.triangle_materials, [0, 0, 1, 1]);
+    assert_eq!(mesh.triangles[1], [0, 1, 3]);
+    assert_eq!(mesh.assets.material_libraries, ["a b.mtl"]);
+    assert_eq!(mesh.positions[1].x, 1e-7);
+    assert_eq!(mesh.vertex.colors[1].to_array(), [0.0, 0.5, 0.0, 1.0]);
+    assert!(mesh.check().is_closed());
+    assert_eq!(reread(Format::Obj, &mesh), mesh);
+}
+
+#[test]
+fn faces_before_a_material_have_none() {
+    let mesh = parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nusemtl a\nf 1 2 4\n");
+    assert_eq!(mesh.materials, ["", "a"]);
+    assert_eq!(mesh.triangle_materials, [0, 1]);
+    assert_eq!(reread(Format::Obj, &mesh), mesh);
+}
+
+#[test]
+fn forward_references_are_allowed() {
+    let mesh = parse_obj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    assert_eq!(mesh.triangles, [[0, 1, 2]]);
+}
+
+#[test]
+fn vertices_split_at_a_seam_are_welded_and_touching_ones_are_not() {
+    let faces = "f 1 3 2\nf 1 2 4\nf 1 4 3\n";
+    let split = parse_obj(&format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv 0 0 1\n{faces}f 5 6 7\n"));
+    assert_eq!(split.positions.len(), 4);
+    assert!(split.check().is_closed());
+
+    let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf -4 -2 -3\nf -4 -3 -1\nf -4 -1 -2\nf -3 -2 -1\n";
+    let mirrored = "v 0 0 0\nv -1 0 0\nv 0 1 0\nv 0 0 1\nf -4 -3 -2\nf -4 -1 -3\nf -4 -2 -1\nf -3 -1 -2\n";
+    let touching = parse_obj(&format!("{tetrahedron}{mirrored}"));
+    assert_eq!(touching.positions.len(), 8);
+    assert!(touching.check().is_closed() && touching.check().is_manifold());
+}
+
+#[test]
+fn polygons_are_split_without_turning_a_triangle_over() {
+    // An arrowhead: only the diagonal from its tip to its notch lies inside.
+    let arrowhead = parse_obj("v 0 0 0\nv 2 -1 0\nv 0.5 0 0\nv 2 1 0\nf 2 3 4 1\n");
+    let star = parse_obj(
+        "v 0 3 0\nv 0.5 1 0\nv 3 1 0\nv 1 -0.5 0\nv 2 -3 0\nv 0 -1 0\nv -2 -3 0\nv -1 -0.5 0\nv -3 1 0\nv -0.5 1 0\n\
+         f 10 9 8 7 6 5 4 3 2 1\n",
+    );
+    for (mesh, triangles) in [(arrowhead, 2), (star, 8)] {
+        assert_eq!(mesh.triangles.len(), triangles);
+        let turn = |triangle: usize| {
+            let [a, b, c] = mesh.corners(triangle);
+            (b - a).cross(c - a).z.signum()
+        };
+        assert!((0..triangles).all(|triangle| turn(triangle) == turn(0)));
+    }
+}
+
+#[test]
+fn quadrilaterals_get_the_rounder_triangles() {
+    // A flat rhombus: its short diagonal is the better one, whichever corner comes first.
+    let rhombus = "v 0 0 0\nv 3 -1 0\nv 6 0 0\nv 3 1 0\n";
+    for face in ["f 1 2 3 4", "f 2 3 4 1", "f 4 3 2 1"] {
+        let mesh = parse_obj(&format!("{rhombus}{face}\n"));
+        assert!(mesh.triangles.iter().all(|triangle| triangle.contains(&1) && triangle.contains(&3)));
+    }
+}
+
+#[test]
+fn corners_on_a_line_keep_their_edges() {
+    // A box open at the top, with a corner of one face on an edge of it: leaving it out would open a gap.
+    let mesh = parse_obj("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4 5\n");
+    assert_eq!(mesh.triangles.len(), 3);
+    assert_eq!(mesh.check().boundary_edges, [[0, 1], [0, 4], [1, 2], [2, 3], [3, 4]]);
+}
+
+#[test]
+fn errors_name_the_line() {
+    let error = |text: &str| parse(Format::Obj, text).unwrap_err().to_string();
+    let start = "v 0 0 0\nv 1 0 0 \\\n 1\nv 0 1 0\n";
+    assert_eq!(error(&format!("{start}f 1 2 4\n")), "line 5: vertex 4 is out of range: there are 3");
+    assert_eq!(error(&format!("{start}f 1 2 -4\n")), "line 5: vertex -4 is out of range: there are 3");
+    assert_eq!(error(&format!("{start}f 1/1 2/1 3/1\n")), "line 5: texture coordinate 1 is out of range: there are 0");
+    assert_eq!(error(&format!("{start}f 1//1 2 3\n")), "line 5: normal 1 is out of range: there are 0");
+    assert_eq!(error(&format!("{start}f 0 1 2\n")), "line 5: vertex 0 is out of range: there are 3");
+    assert_eq!(error(&format!("{start}v 1 nan 0\n")), "line 5: 'nan' is not a finite number");
+    assert_eq!(error(&format!("{start}v 1 1e999 0\n")), "line 5: '1e999' is not a finite number");
+    assert_eq!(error("v 0 0\n"), "line 1: 3 numbers expected, 2 found");
+    assert_eq!(error(&format!("{start}f 1 2\n")), "line 5: a face needs at least three corners, 2 found");
+    assert_eq!(error(&format!("{start}f 1 2 x\n")), "line 5: 'x' is not a face corner (v, v/vt, v//vn or v/vt/vn)");
+    assert_eq!(error(&format!("{start}f 1/1/1/1 2 3\n")).split(": ").next(), Some("line 5"));
+    assert_eq!(error(start), "the file has no triangles");
+    assert_eq!(error(""), "the file has no triangles");
+}
+
+#[test]
+fn errors_name_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("broken.obj");
+    std::fs::write(&path, "v 0 0 0\nf 1 2 3\n").unwrap();
+    let error = io::read(&path).unwrap_err().to_string();
+    assert_eq!(error, format!("{}: line 2: vertex 2 is out of range: there are 1", path.display()));
+    let missing = io::read(folder.path().join("missing.obj")).unwrap_err().to_string();
+    assert!(missing.contains("missing.obj: No such file"), "{missing}");
+    let unknown = io::read(folder.path().join("a.fbx")).unwrap_err().to_string();
+    assert!(unknown.contains("a.fbx: unknown mesh format"), "{unknown}");
+}

@@ -1,0 +1,69 @@
+use glam::{DVec2, DVec3, DVec4};
+use isochore_mesh::io::{self, Format};
+
+use crate::{parse, seamed_box, written};
+
+#[test]
+fn text_is_read() {
+    let text = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 5\nproperty float x\nproperty double y\n\
+                property int z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float s\n\
+                property float t\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement edge 1\n\
+                property int vertex1\nproperty int vertex2\nelement face 2\nproperty list uchar int vertex_index\n\
+                end_header\n0 0 0 0 0 1 0 0 255 0 51\n1 0.1 0 0 0 1 1 0 0 0 0\n1 1 0 0 0 1 1 1 0 0 0\n\
+                0 1 0 0 0 1 0 1 0 0 0\n0 0 2 0 0 1 0.5 0 0 0 0\n0 1\n4 0 1 2 3\n3 0 1 4\n";
+    let mesh = parse(Format::Ply, text).unwrap();
+    assert_eq!(mesh.triangles.len(), 3);
+    assert_eq!(mesh.positions[1], DVec3::new(1.0, 0.1, 0.0));
+    assert_eq!(mesh.vertex.colors[0], DVec4::new(1.0, 0.0, 0.2, 1.0));
+    assert_eq!(mesh.corner.uvs[0][2][2], DVec2::new(0.5, 0.0));
+    assert_eq!(mesh.corner.normals[0], [DVec3::Z; 3]);
+}
+
+#[test]
+fn both_byte_orders_are_read() {
+    for (order, bytes) in [("little", f32::to_le_bytes as fn(f32) -> [u8; 4]), ("big", f32::to_be_bytes)] {
+        let mut file = format!(
+            "ply\nformat binary_{order}_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+             property float z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n"
+        )
+        .into_bytes();
+        for coordinate in [0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 2.5, 0.0] {
+            file.extend(bytes(coordinate));
+        }
+        file.extend([3, 0, 1, 2]);
+        let mesh = io::read_bytes(Format::Ply, &file).unwrap();
+        assert_eq!(mesh.positions, [DVec3::ZERO, DVec3::new(1.5, 0.0, 0.0), DVec3::new(0.0, 2.5, 0.0)]);
+        assert_eq!(mesh.triangles, [[0, 1, 2]]);
+    }
+}
+
+#[test]
+fn written_surface_is_closed_for_readers_that_do_not_weld() {
+    let bytes = written(Format::Ply, &seamed_box());
+    let header = String::from_utf8_lossy(&bytes);
+    assert!(header.contains("element vertex 30\n"), "a vertex was split");
+    assert!(header.contains("property list uchar double texcoord\n"));
+    assert!(header.contains("property float red\n"));
+}
+
+#[test]
+fn errors_are_one_line() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let error = |body: &str| parse(Format::Ply, &format!("{header}{body}")).unwrap_err().to_string();
+    assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "face 0 names vertex 3, but the file has 3 vertices");
+    assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), "face 0 names vertex -1, but the file has 3 vertices");
+    assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), "face 0 has fewer than three corners");
+    let message = error("0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n");
+    assert!(message.starts_with("Line 11: Couldn't read element line. String: '1 nan 0"), "{message}");
+    let truncated = error("0 0 0\n1 0 0\n");
+    assert!(!truncated.contains('\n') && truncated.contains("nexpected end of file"), "{truncated}");
+    let mut binary = written(Format::Ply, &seamed_box());
+    let body = binary.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
+    binary[body..body + 8].copy_from_slice(&f64::NAN.to_le_bytes());
+    let message = io::read_bytes(Format::Ply, &binary).unwrap_err().to_string();
+    assert!(message.starts_with("vertex 0 is at [NaN, "), "{message}");
+    assert!(parse(Format::Ply, "plx\n").is_err());
+    // A count without anything to count must not be looped over.
+    assert!(parse(Format::Ply, "ply\nformat ascii 1.0\nelement vertex 99999999999\nend_header\n").is_err());
+}

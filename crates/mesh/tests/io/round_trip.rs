@@ -1,0 +1,123 @@
+use std::sync::Arc;
+
+use glam::{DVec3, DVec4};
+use isochore_mesh::io::Format;
+use isochore_mesh::{Assets, TriMesh, primitives};
+
+use crate::{FORMATS, reread, seamed_box};
+
+/// What `format` keeps of `mesh`.
+fn kept(format: Format, mesh: &TriMesh) -> TriMesh {
+    let mut kept = format.stored(mesh);
+    if matches!(format, Format::Stl | Format::Off) {
+        return TriMesh::new(kept.positions, kept.triangles);
+    }
+    if format == Format::Ply {
+        kept.triangle_materials.clear();
+        kept.materials.clear();
+    }
+    kept
+}
+
+/// `mesh` with its vertices numbered by first use, as STL, which has none, gives them back.
+fn numbered_by_use(mesh: &TriMesh) -> TriMesh {
+    let mut numbers = vec![None; mesh.positions.len()];
+    let mut positions = Vec::new();
+    let mut number = |vertex: u32| {
+        *numbers[vertex as usize].get_or_insert_with(|| {
+            positions.push(mesh.positions[vertex as usize]);
+            positions.len() as u32 - 1
+        })
+    };
+    let triangles = mesh.triangles.iter().map(|triangle| triangle.map(&mut number)).collect();
+    TriMesh::new(positions, triangles)
+}
+
+fn assert_comes_back(format: Format, mesh: &TriMesh) {
+    let mut expected = kept(format, mesh);
+    if format == Format::Stl {
+        expected = numbered_by_use(&expected);
+    }
+    let mut found = reread(format, mesh);
+    // Names of materials become a document of their own.
+    found.assets = Assets::default();
+    assert_eq!(found, expected, "{format:?}");
+}
+
+#[test]
+fn bare_mesh_comes_back_bit_by_bit() {
+    for format in FORMATS {
+        assert_comes_back(format, &primitives::icosphere(0.1, 3));
+        assert_comes_back(format, &primitives::latitude_longitude_sphere(1e10, 9, 5));
+    }
+}
+
+#[test]
+fn seams_colors_and_materials_come_back() {
+    let mesh = seamed_box();
+    assert!(mesh.check().is_closed());
+    for format in FORMATS {
+        assert_comes_back(format, &mesh);
+        assert!(reread(format, &mesh).check().is_closed());
+    }
+}
+
+#[test]
+fn corner_colors_come_back() {
+    let mut mesh = seamed_box();
+    mesh.vertex.colors.clear();
+    mesh.corner.colors = (0..mesh.triangles.len()).map(|t| [DVec4::new(t as f64 / 64.0, 0.0, 1.0, 0.5); 3]).collect();
+    for format in [Format::Glb, Format::Gltf, Format::Ply] {
+        assert_comes_back(format, &mesh);
+    }
+    // Whole bytes are written as such.
+    mesh.corner.colors = (0..mesh.triangles.len()).map(|t| [DVec4::splat(t as f64 / 255.0); 3]).collect();
+    assert_comes_back(Format::Ply, &mesh);
+}
+
+#[test]
+fn smooth_attributes_come_back_without_splitting() {
+    let mut mesh = primitives::icosphere(1.0, 2);
+    let normals = mesh.vertex_normals();
+    mesh.corner.normals = mesh.triangles.iter().map(|t| t.map(|v| normals[v as usize])).collect();
+    for format in [Format::Obj, Format::Ply] {
+        assert_comes_back(format, &mesh);
+    }
+    let found = reread(Format::Glb, &mesh);
+    assert_eq!(found.positions, Format::Glb.stored(&mesh).positions);
+    for (found, expected) in found.corner.normals.iter().flatten().zip(mesh.corner.normals.iter().flatten()) {
+        // Single precision rounds each of three components by half an ulp.
+        assert!(found.distance(*expected) < 2.0 * f64::from(f32::EPSILON));
+    }
+}
+
+#[test]
+fn unused_vertices_and_uv_sets_come_back() {
+    let mut mesh = seamed_box();
+    mesh.positions.insert(0, DVec3::new(9.0, 9.0, 9.0));
+    mesh.vertex.colors.insert(0, DVec4::ONE);
+    mesh.triangles.iter_mut().flatten().for_each(|vertex| *vertex += 1);
+    mesh.corner.uvs.push(mesh.corner.uvs[0].iter().map(|uvs| uvs.map(|uv| uv * 0.5)).collect());
+    assert_comes_back(Format::Glb, &mesh);
+    mesh.corner.uvs.pop();
+    assert_comes_back(Format::Obj, &mesh);
+    assert_comes_back(Format::Ply, &mesh);
+}
+
+#[test]
+fn stored_volume_is_the_volume_of_the_file() {
+    let mesh = primitives::icosphere(0.1, 3);
+    for format in [Format::Obj, Format::Glb, Format::Gltf, Format::Ply, Format::Off] {
+        assert_eq!(format.stored(&mesh).volume().to_bits(), reread(format, &mesh).volume().to_bits());
+    }
+    assert_ne!(Format::Glb.stored(&mesh).volume(), mesh.volume());
+}
+
+#[test]
+fn carried_documents_survive_a_second_round() {
+    let mesh = reread(Format::Glb, &seamed_box());
+    assert!(mesh.assets.gltf.is_some());
+    let again = reread(Format::Glb, &mesh);
+    assert_eq!(again, mesh);
+    assert!(!Arc::ptr_eq(again.assets.gltf.as_ref().unwrap(), mesh.assets.gltf.as_ref().unwrap()));
+}
