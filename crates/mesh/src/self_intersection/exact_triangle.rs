@@ -1,0 +1,153 @@
+//! Whether two triangles intersect, by predicates that are exact whatever the rounding (J. Shewchuk, *Adaptive Precision
+//! Floating-Point Arithmetic and Fast Robust Geometric Predicates*, 1997).
+
+use glam::{DVec2, DVec3};
+use robust::{Coord, Coord3D};
+
+use crate::Aabb;
+
+/// A triangle and the box around it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ExactTriangle {
+    corners: [DVec3; 3],
+    aabb: Aabb,
+    has_area: bool,
+}
+
+impl ExactTriangle {
+    /// Triangles over `positions`, scaled by a power of two, which loses nothing, so that products cannot overflow.
+    pub(super) fn all(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Self> {
+        let used = || triangles.iter().flatten().map(|&vertex| positions[vertex as usize]);
+        let largest = used().fold(0.0, |largest: f64, p| largest.max(p.abs().max_element()));
+        let scale = if largest > 0.0 { libm::ldexp(1.0, -libm::frexp(largest).1.max(-1000)) } else { 1.0 };
+        triangles.iter().map(|triangle| Self::new(triangle.map(|vertex| positions[vertex as usize] * scale))).collect()
+    }
+
+    fn new(corners: [DVec3; 3]) -> Self {
+        Self { corners, aabb: Aabb::of(corners), has_area: projection(&corners).is_some() }
+    }
+
+    /// Whether the triangles have points in common beyond the vertices and edges that they share.
+    pub(super) fn intersects(&self, other: &Self) -> bool {
+        let apart = self.aabb.min.cmpgt(other.aabb.max) | other.aabb.min.cmpgt(self.aabb.max);
+        if apart.any() || !self.has_area || !other.has_area {
+            return false;
+        }
+        let (mut shared, mut count) = ([(0, 0); 3], 0);
+        for i in 0..3 {
+            for j in 0..3 {
+                if self.corners[i] == other.corners[j] {
+                    shared[count] = (i, j);
+                    count += 1;
+                }
+            }
+        }
+        match count {
+            0 => intersect(&self.corners, &other.corners),
+            1 => {
+                let (i, j) = shared[0];
+                let opposite = |t: &[DVec3; 3], k: usize| [t[(k + 1) % 3], t[(k + 2) % 3]];
+                // If they met anywhere else, the way there from the shared vertex would go on to leave one of them, and it can
+                // only do so through the opposite edge.
+                segment_meets_triangle(opposite(&self.corners, i), &other.corners)
+                    || segment_meets_triangle(opposite(&other.corners, j), &self.corners)
+            }
+            2 => {
+                // The corners off the shared edge: indices sum to 3.
+                let apexes = [3 - shared[0].0 - shared[1].0, 3 - shared[0].1 - shared[1].1];
+                let [a, b] = [self.corners[shared[0].0], self.corners[shared[1].0]];
+                folds_over(a, b, self.corners[apexes[0]], other.corners[apexes[1]])
+            }
+            _ => true,
+        }
+    }
+}
+
+/// Whether triangles without common vertices have common points.
+fn intersect(first: &[DVec3; 3], second: &[DVec3; 3]) -> bool {
+    // Most neighbors lie on one side of the other's plane.
+    let sides = |triangle: &[DVec3; 3], points: &[DVec3; 3]| points.map(|point| side(triangle, point));
+    let on_one_side = |sides: [f64; 3]| sides.iter().all(|&s| s > 0.0) || sides.iter().all(|&s| s < 0.0);
+    if on_one_side(sides(first, second)) || on_one_side(sides(second, first)) {
+        return false;
+    }
+    // If they meet, an edge of one meets the other; where one lies inside the other in one plane, all its edges do.
+    let edges = |t: &[DVec3; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+    edges(first).into_iter().any(|edge| segment_meets_triangle(edge, second))
+        || edges(second).into_iter().any(|edge| segment_meets_triangle(edge, first))
+}
+
+/// Whether two triangles over the edge `ab` lie in one plane and on the same side of the edge.
+fn folds_over(a: DVec3, b: DVec3, first: DVec3, second: DVec3) -> bool {
+    if side(&[a, b, first], second) != 0.0 {
+        return false;
+    }
+    let Some(dropped) = projection(&[a, b, first]) else { return false };
+    let side_of_edge = |apex: DVec3| turn(flat(a, dropped), flat(b, dropped), flat(apex, dropped));
+    let (first, second) = (side_of_edge(first), side_of_edge(second));
+    (first > 0.0 && second > 0.0) || (first < 0.0 && second < 0.0)
+}
+
+/// Whether a segment and a triangle with area, borders included, have common points.
+fn segment_meets_triangle([p, q]: [DVec3; 2], triangle: &[DVec3; 3]) -> bool {
+    let (at_p, at_q) = (side(triangle, p), side(triangle, q));
+    if (at_p > 0.0 && at_q > 0.0) || (at_p < 0.0 && at_q < 0.0) {
+        return false;
+    }
+    let [a, b, c] = *triangle;
+    if at_p == 0.0 && at_q == 0.0 {
+        return projection(triangle).is_some_and(|dropped| {
+            flat_segment_meets_triangle([p, q].map(|v| flat(v, dropped)), triangle.map(|v| flat(v, dropped)))
+        });
+    }
+    // The line crosses the plane between p and q: inside the triangle if it passes all edges on the same side.
+    let passes = [side(&[p, q, a], b), side(&[p, q, b], c), side(&[p, q, c], a)];
+    passes.iter().all(|&pass| pass >= 0.0) || passes.iter().all(|&pass| pass <= 0.0)
+}
+
+/// [`segment_meets_triangle`] within a plane.
+fn flat_segment_meets_triangle([p, q]: [DVec2; 2], [a, b, c]: [DVec2; 3]) -> bool {
+    let holds = |point: DVec2| {
+        let turns = [turn(a, b, point), turn(b, c, point), turn(c, a, point)];
+        turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0)
+    };
+    holds(p) || holds(q) || [[a, b], [b, c], [c, a]].into_iter().any(|edge| segments_meet([p, q], edge))
+}
+
+/// Whether two segments in the plane have common points.
+fn segments_meet([p, q]: [DVec2; 2], [a, b]: [DVec2; 2]) -> bool {
+    let (at_a, at_b) = (turn(p, q, a), turn(p, q, b));
+    let (at_p, at_q) = (turn(a, b, p), turn(a, b, q));
+    if at_a == 0.0 && at_b == 0.0 && at_p == 0.0 && at_q == 0.0 {
+        // On one line: do their boxes overlap?
+        let overlap = p.min(q).cmple(a.max(b)) & a.min(b).cmple(p.max(q));
+        return overlap.all();
+    }
+    let separates = |one: f64, other: f64| (one > 0.0 && other > 0.0) || (one < 0.0 && other < 0.0);
+    !separates(at_a, at_b) && !separates(at_p, at_q)
+}
+
+/// An axis whose removal leaves the triangle with an area; none if it has no area.
+fn projection(corners: &[DVec3; 3]) -> Option<usize> {
+    (0..3).find(|&dropped| {
+        let [a, b, c] = corners.map(|corner| flat(corner, dropped));
+        turn(a, b, c) != 0.0
+    })
+}
+
+/// The point without its coordinate along `dropped`.
+fn flat(point: DVec3, dropped: usize) -> DVec2 {
+    DVec2::new(point[(dropped + 1) % 3], point[(dropped + 2) % 3])
+}
+
+/// Sign of the side of the triangle's plane on which a point lies; zero exactly on it.
+fn side(&[a, b, c]: &[DVec3; 3], point: DVec3) -> f64 {
+    let coordinates = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+    robust::orient3d(coordinates(a), coordinates(b), coordinates(c), coordinates(point))
+}
+
+/// Sign of the turn from `ab` to `c`, positive to the left; zero exactly if they lie on a line.
+fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    let coordinates = |p: DVec2| Coord { x: p.x, y: p.y };
+    robust::orient2d(coordinates(a), coordinates(b), coordinates(c))
+}

@@ -1,0 +1,185 @@
+use glam::{DVec3, dvec3};
+use parry3d_f64::math::{Pose, Vector};
+use parry3d_f64::query;
+use parry3d_f64::shape::Triangle;
+use proptest::prelude::*;
+
+use super::*;
+use crate::{Silent, primitives::icosphere};
+
+fn pairs(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let mesh = TriMesh::new(positions.iter().map(|&p| DVec3::from_array(p)).collect(), triangles.to_vec());
+    SelfIntersections::of(&mesh, &Silent).unwrap().pairs().to_vec()
+}
+
+/// Two triangles without common indices.
+fn two(a: [[f64; 3]; 3], b: [[f64; 3]; 3]) -> bool {
+    !pairs(&[a, b].concat(), &[[0, 1, 2], [3, 4, 5]]).is_empty()
+}
+
+const FLAT: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
+
+#[test]
+fn contacts_of_separate_triangles_count() {
+    assert!(two(FLAT, [[0.5, 0.5, -1.0], [0.5, 0.5, 1.0], [3.0, 3.0, 0.0]]), "piercing");
+    assert!(two(FLAT, [[0.5, 0.5, 0.0], [0.5, 0.5, 1.0], [1.0, 0.5, 1.0]]), "touching with a corner");
+    assert!(two(FLAT, [[1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [3.0, 0.0, 0.0]]), "overlapping in one plane");
+    assert!(two(FLAT, [[0.2, 0.2, 0.0], [0.4, 0.2, 0.0], [0.2, 0.4, 0.0]]), "one inside the other in one plane");
+    assert!(two(FLAT, [[1.0, 0.0, 0.0], [3.0, 0.0, 0.0], [2.0, -1.0, 0.0]]), "along an edge in one plane");
+    assert!(!two(FLAT, [[0.5, 0.5, 1e-300], [0.5, 0.5, 1.0], [1.0, 0.5, 1.0]]), "a hair apart");
+    assert!(!two(FLAT, [[1.5, 1.5, 0.0], [3.0, 1.5, 0.0], [1.5, 3.0, 0.0]]), "side by side in one plane");
+}
+
+#[test]
+fn triangles_over_an_edge_count_where_they_fold_over() {
+    let fold = |apex: [f64; 3]| !pairs(&[FLAT[0], FLAT[1], FLAT[2], apex], &[[0, 1, 2], [1, 0, 3]]).is_empty();
+    assert!(fold([0.3, 1.0, 0.0]));
+    assert!(fold([5.0, 5.0, 0.0]));
+    assert!(!fold([0.3, -1.0, 0.0]));
+    // Folded back almost onto the other triangle, yet not in its plane.
+    assert!(!fold([0.3, 1.0, 1e-17]));
+}
+
+#[test]
+fn triangles_at_a_vertex_count_where_they_meet_elsewhere() {
+    let fan = |p: [f64; 3], q: [f64; 3]| !pairs(&[FLAT[0], FLAT[1], FLAT[2], p, q], &[[0, 1, 2], [0, 3, 4]]).is_empty();
+    assert!(fan([1.0, 0.5, -1.0], [0.5, 1.0, 1.0]), "piercing");
+    assert!(fan([0.5, 0.1, 0.0], [0.1, 0.5, 0.0]), "inside, in one plane");
+    assert!(fan([9.0, 1.0, 0.0], [1.0, 9.0, 0.0]), "across, in one plane");
+    assert!(!fan([-1.0, -0.5, 0.0], [-0.5, -1.0, 0.0]), "opposite, in one plane");
+    assert!(!fan([1.0, 0.5, 1.0], [0.5, 1.0, 1.0]), "above");
+}
+
+#[test]
+fn split_vertices_count_as_one() {
+    assert!(!two(FLAT, [FLAT[1], FLAT[0], [1.0, -1.0, 0.5]]));
+    assert!(!two(FLAT, [FLAT[1], [3.0, 0.0, 0.5], [3.0, 1.0, 0.5]]));
+    assert!(two(FLAT, FLAT), "twice the same triangle");
+}
+
+#[test]
+fn triangles_without_area_are_left_out() {
+    assert!(!two(FLAT, [[0.5, 0.5, -1.0], [0.5, 0.5, 1.0], [0.5, 0.5, 3.0]]));
+    assert!(!two(FLAT, [[0.5, 0.5, -1.0], [0.5, 0.5, 1.0], [0.5, 0.5, 1.0]]));
+}
+
+#[test]
+fn interpenetrating_spheres_cross_in_a_band() {
+    let sphere = icosphere(1.0, 3);
+    assert!(SelfIntersections::of(&sphere, &Silent).unwrap().is_empty());
+    let shift = dvec3(0.7, 0.1, 0.05);
+    let count = sphere.positions.len() as u32;
+    let mesh = TriMesh::new(
+        sphere.positions.iter().copied().chain(sphere.positions.iter().map(|&p| p + shift)).collect(),
+        sphere.triangles.iter().copied().chain(sphere.triangles.iter().map(|t| t.map(|v| v + count))).collect(),
+    );
+    let found = SelfIntersections::of(&mesh, &Silent).unwrap();
+
+    // Slow second implementation: all pairs, with distances by another library. A pair nearer than its rounding would be
+    // undecided; there is none.
+    let triangle = |t: usize| {
+        let [a, b, c] = mesh.corners(t).map(|p| Vector::new(p.x, p.y, p.z));
+        Triangle::new(a, b, c)
+    };
+    let half = sphere.triangles.len();
+    let mut expected = Vec::new();
+    for a in 0..half {
+        for b in half..2 * half {
+            let apart =
+                query::distance(&Pose::identity(), &triangle(a), &Pose::identity(), &triangle(b)).unwrap().distance;
+            if apart == 0.0 {
+                expected.push([a as u32, b as u32]);
+            } else {
+                assert!(apart > 1e-9);
+            }
+        }
+    }
+    assert!(expected.len() > 50);
+    assert_eq!(found.pairs(), expected);
+
+    // The band is about as wide as a triangle and as long as the circle in which the spheres meet.
+    let circle = 2.0 * std::f64::consts::PI * (1.0 - 0.25 * shift.length_squared()).sqrt();
+    let area = found.area(&mesh);
+    assert!(area > 0.05 * circle && area < 0.5 * circle, "{area}");
+}
+
+#[test]
+fn same_pairs_for_any_number_of_threads() {
+    let mut mesh = icosphere(1.0, 4);
+    for (i, p) in mesh.positions.iter_mut().enumerate() {
+        *p += 0.15 * dvec3(i as f64 * 0.618_034, i as f64 * 0.414_214, i as f64 * 0.732_051).fract();
+    }
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| SelfIntersections::of(&mesh, &Silent).unwrap())
+    };
+    let one = with(1);
+    assert!(!one.is_empty());
+    assert_eq!(one, with(2));
+    assert_eq!(one, with(8));
+}
+
+#[test]
+fn stops_when_cancelled() {
+    struct Stop;
+    impl Monitor for Stop {
+        fn is_cancelled(&self) -> bool {
+            true
+        }
+    }
+    let result = SelfIntersections::of(&icosphere(1.0, 2), &Stop);
+    assert_eq!(result, Err(SelfIntersectionError::Cancelled(Cancelled)));
+}
+
+proptest! {
+    #[test]
+    fn agrees_with_exact_integers(coordinates in prop::array::uniform18(-2..=2_i64)) {
+        // On a small lattice contacts of every kind are common, and determinants of integers are exact.
+        let corner = |i: usize| [coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]];
+        let triangles = [[corner(0), corner(1), corner(2)], [corner(3), corner(4), corner(5)]];
+        let shares = triangles[0].iter().any(|p| triangles[1].contains(p));
+        let flat = triangles.iter().any(|t| integers::normal(t) == [0; 3]);
+        prop_assume!(!shares && !flat);
+        let real = triangles.map(|t| t.map(|p| p.map(|x| x as f64)));
+        prop_assert_eq!(two(real[0], real[1]), integers::have_common_point(&triangles));
+    }
+}
+
+/// Triangles with integer corners, by separation instead of intersection: convex bodies have no common point exactly if a plane
+/// lies strictly between them, and for triangles one of a few normals will do.
+mod integers {
+    type Point = [i64; 3];
+
+    fn minus(a: Point, b: Point) -> Point {
+        [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+    }
+
+    fn cross(a: Point, b: Point) -> Point {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    }
+
+    fn dot(a: Point, b: Point) -> i64 {
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    }
+
+    pub(super) fn normal(t: &[Point; 3]) -> Point {
+        cross(minus(t[1], t[0]), minus(t[2], t[0]))
+    }
+
+    pub(super) fn have_common_point(triangles: &[[Point; 3]; 2]) -> bool {
+        let normals = triangles.map(|t| normal(&t));
+        let edges = |t: &[Point; 3]| [minus(t[1], t[0]), minus(t[2], t[1]), minus(t[0], t[2])];
+        let mut axes = normals.to_vec();
+        for edge in edges(&triangles[0]) {
+            axes.extend(edges(&triangles[1]).map(|other| cross(edge, other)));
+        }
+        for (t, normal) in triangles.iter().zip(normals) {
+            axes.extend(edges(t).map(|edge| cross(edge, normal)));
+        }
+        !axes.into_iter().any(|axis| {
+            let [first, second] = triangles.map(|t| t.map(|p| dot(p, axis)));
+            let (low, high) = (|v: [i64; 3]| *v.iter().min().unwrap(), |v: [i64; 3]| *v.iter().max().unwrap());
+            high(first) < low(second) || high(second) < low(first)
+        })
+    }
+}
