@@ -2,6 +2,7 @@
 
 mod analytic;
 mod arc_length;
+mod bernstein;
 mod bezier;
 mod closest_point;
 mod curve;
@@ -10,6 +11,7 @@ mod frame;
 mod frenet;
 mod gauge_quadrature;
 mod inversion;
+mod moebius;
 mod ph_cubic;
 mod projection;
 mod quadrature;
@@ -34,6 +36,7 @@ pub use frame::{
 pub use frenet::{FrenetError, frenet_frames};
 pub use gauge_quadrature::exact_frames;
 pub use inversion::Inversion;
+pub use moebius::{MoebiusSegment, MoebiusSpline, MoebiusSplineError, Tilt};
 pub use ph_cubic::{PhCubic, PhCubicError, PhSpline, PhSplineError, RationalRotation};
 pub use projection::project_along_chord;
 pub use reach::{Reach, reach};

@@ -153,7 +153,7 @@ fn constraints_unwrap_from_the_first() {
     let constraints = constraints_at(&stations, &[DVec3::Z; 6]);
     let twisted = meet_constraints(&spine, &frames, &constraints, TwistLaw::ArcLength).unwrap();
     // At u = 0 the z axis is a quarter turn from the normal −x, about the tangent.
-    assert!((twisted.angles[0] - 1.5707963267949).abs() < 1e-12);
+    assert!((twisted.angles[0] - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
     for pair in twisted.angles[..6].windows(2) {
         assert!((pair[1] - pair[0]).abs() <= PI);
     }

@@ -1,0 +1,105 @@
+//! Splines of [`MoebiusSegment`]s.
+
+use glam::DVec3;
+
+use super::{MoebiusSegment, Tilt};
+use crate::{Curve, CurveJet, Frame, FrameError, PhCubicError, uniform_parameters};
+
+/// A segment without a rational curve.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("segment {segment}, from parameter {start} to {end}: {reason}")]
+pub struct MoebiusSplineError {
+    /// The segment, counted from zero.
+    pub segment: usize,
+    /// Parameter of the original curve at its start.
+    pub start: f64,
+    /// Parameter of the original curve at its end.
+    pub end: f64,
+    /// What its planar data lack.
+    pub reason: PhCubicError,
+}
+
+/// Rational curves of degree six with continuous tangent and a continuous rational rotation-minimizing frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MoebiusSpline {
+    segments: Vec<MoebiusSegment>,
+    closed: bool,
+}
+
+impl MoebiusSpline {
+    /// Interpolates points and tangents of `curve` at `segments` equal steps of its parameter: third order in position and
+    /// frame between the joints, fourth at the joints; with [`Tilt::WhenNeeded`] fourth order in position throughout.
+    ///
+    /// # Errors
+    /// The first segment without a solution.
+    pub fn interpolate(curve: &impl Curve, segments: usize, tilt: Tilt) -> Result<Self, MoebiusSplineError> {
+        let parameters = uniform_parameters(curve, segments);
+        let segments = parameters
+            .windows(2)
+            .enumerate()
+            .map(|(segment, pair)| {
+                let (start, end) = (curve.jet(pair[0]), curve.jet(pair[1]));
+                MoebiusSegment::hermite(start.position, end.position, start.first, end.first, tilt)
+                    .map_err(|reason| MoebiusSplineError { segment, start: pair[0], end: pair[1], reason })
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { segments, closed: curve.is_closed() })
+    }
+
+    /// Joins segments that are known to continue each other.
+    ///
+    /// # Panics
+    /// If there are none.
+    pub fn from_segments(segments: Vec<MoebiusSegment>, closed: bool) -> Self {
+        assert!(!segments.is_empty(), "a spline has at least one segment");
+        Self { segments, closed }
+    }
+
+    /// The segments in order.
+    pub fn segments(&self) -> &[MoebiusSegment] {
+        &self.segments
+    }
+
+    /// Points and rotation-minimizing frames at `samples` equal parameter steps in each segment, and at the end.
+    ///
+    /// # Errors
+    /// [`FrameError::Reference`] where `reference` is along the first tangent.
+    ///
+    /// # Panics
+    /// If `samples` is zero.
+    pub fn frames(&self, reference: DVec3, samples: usize) -> Result<Vec<(DVec3, Frame)>, FrameError> {
+        assert!(samples > 0, "at least one sample a segment");
+        let parameters: Vec<f64> = (0..=samples).map(|i| i as f64 / samples as f64).collect();
+        let mut r = reference;
+        let mut all: Vec<(DVec3, Frame)> = Vec::with_capacity(self.segments.len() * samples + 1);
+        for segment in &self.segments {
+            let frames = segment.frames(&parameters, r)?;
+            // The last frame of a segment is the first of the next.
+            all.pop();
+            all.extend(parameters.iter().zip(&frames).map(|(&u, &frame)| (segment.position(u), frame)));
+            r = frames[samples].r;
+        }
+        Ok(all)
+    }
+}
+
+/// Segment number plus the parameter inside the segment.
+impl Curve for MoebiusSpline {
+    fn domain(&self) -> (f64, f64) {
+        (0.0, self.segments.len() as f64)
+    }
+
+    fn jet(&self, parameter: f64) -> CurveJet {
+        let last = self.segments.len() - 1;
+        let segment = (parameter.max(0.0) as usize).min(last);
+        self.segments[segment].jet(parameter - segment as f64)
+    }
+
+    fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        (0..=self.segments.len()).map(|i| i as f64).collect()
+    }
+}
