@@ -1,0 +1,42 @@
+//! Measurements side by side: everything that is compared runs in turn in one process, so that a slow moment of the machine
+//! hits all alike, and the medians are compared.
+
+#![expect(clippy::print_stdout, reason = "benchmarks print their results")]
+
+use std::time::Instant;
+
+/// Rounds of every measurement, after one that warms up.
+const ROUNDS: usize = 9;
+
+/// Median seconds of each of the `jobs`, run in turn.
+pub fn interleaved_medians(jobs: &mut [&mut dyn FnMut()]) -> Vec<f64> {
+    let mut seconds = vec![Vec::with_capacity(ROUNDS); jobs.len()];
+    for round in 0..=ROUNDS {
+        for (job, seconds) in jobs.iter_mut().zip(&mut seconds) {
+            let begin = Instant::now();
+            job();
+            if round > 0 {
+                seconds.push(begin.elapsed().as_secs_f64());
+            }
+        }
+    }
+    seconds.iter_mut().map(|seconds| median(seconds)).collect()
+}
+
+fn median(seconds: &mut [f64]) -> f64 {
+    seconds.sort_unstable_by(f64::total_cmp);
+    seconds[seconds.len() / 2]
+}
+
+/// Runs `work` on one thread, whatever the machine has.
+///
+/// # Panics
+/// If the system refuses a thread.
+pub fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started").install(work)
+}
+
+/// Prints a row of cells, each right-aligned in its column.
+pub fn print_row<const N: usize>(cells: [&str; N]) {
+    println!("{}", cells.map(|cell| format!("{cell:>18}")).join(" "));
+}
