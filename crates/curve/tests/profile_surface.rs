@@ -1,0 +1,173 @@
+//! Profile surfaces: the exact rational patch against direct evaluation and golden values, and the checks of the paper.
+
+#![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
+
+use glam::{DVec2, DVec3};
+use isochore_curve::{
+    Curve, Frame, PhCubic, ProfileJet, RationalPatch, RationalProfile, RationalRotation, TrigonometricCurve,
+    exact_frames, profile_surface_curvature, regularity, safe_profile_radius, sweep,
+};
+
+fn example_a() -> PhCubic {
+    PhCubic::hermite(DVec3::ZERO, DVec3::new(1.0, 0.2, 0.1), DVec3::new(1.0, 0.5, 0.0), DVec3::new(1.0, -0.3, 0.4))
+        .unwrap()
+}
+
+fn profile() -> RationalProfile {
+    RationalProfile::polynomial(
+        &[(-0.08, 0.016), (-0.04, 0.096), (0.04, 0.08), (0.096, -0.024)].map(|(x, y)| DVec2::new(x, y)),
+    )
+}
+
+/// A straight profile that does not pass through the spine, on which the check would be empty.
+fn line() -> RationalProfile {
+    RationalProfile::polynomial(&[DVec2::new(-0.1, 0.05), DVec2::new(0.1, 0.09)])
+}
+
+/// The grid over which the golden maxima were taken.
+fn grid() -> impl Iterator<Item = (f64, f64)> {
+    (0..=40).flat_map(|i| (0..=40).map(move |j| (f64::from(i) / 40.0, f64::from(j) / 40.0)))
+}
+
+fn largest_orthogonality(patch: &RationalPatch) -> f64 {
+    grid().map(|(u, v)| patch.jet(u, v).orthogonality().abs()).fold(0.0, f64::max)
+}
+
+fn rational(cubic: &PhCubic, profile: &RationalProfile) -> RationalPatch {
+    RationalPatch::sweep(cubic, &RationalRotation::symmetric(cubic), profile, 0.0).unwrap()
+}
+
+fn frenet(cubic: &PhCubic, profile: &RationalProfile) -> RationalPatch {
+    RationalPatch::sweep(cubic, &RationalRotation::FRENET, profile, 0.0).unwrap()
+}
+
+#[test]
+fn the_net_is_the_sweep_of_the_approximate_frame() {
+    let cubic = example_a();
+    let rotation = RationalRotation::symmetric(&cubic);
+    let patch = rational(&cubic, &profile());
+    assert_eq!((patch.profile_degree, patch.spine_degree, patch.control_points.len()), (3, 9, 40));
+    for (u, v) in grid() {
+        let frame = cubic.frenet_frame(v).turned(rotation.angle(v) - rotation.initial_angle);
+        let mut c = profile().control_points;
+        while c.len() > 1 {
+            c = c.windows(2).map(|pair| pair[0].lerp(pair[1], u)).collect();
+        }
+        let direct = cubic.position(v) + frame.offset(c[0].truncate());
+        // Two dozen roundings of numbers of size one.
+        assert!(patch.jet(u, v).position.distance(direct) < 4e-15);
+    }
+    let golden = DVec3::new(0.7138169990060661, 0.24944257344284454, -0.03432336026672978);
+    // λ is only determined to 1e-9 here, and its effect on the point is 1e-5 times that.
+    assert!(patch.jet(0.3, 0.6).position.distance(golden) < 1e-13, "{}", patch.jet(0.3, 0.6).position);
+}
+
+#[test]
+fn parameter_lines_are_orthogonal() {
+    let cubic = example_a();
+    let half = cubic.split(0.5).0;
+    // Five and three digits given.
+    for (cubic, expected, expected_frenet) in [(cubic, 2.0512e-5, 0.1342), (half, 1.6103e-7, 0.0466)] {
+        let (found, found_frenet) =
+            (largest_orthogonality(&rational(&cubic, &profile())), largest_orthogonality(&frenet(&cubic, &profile())));
+        assert!((found / expected - 1.0).abs() < 3e-5, "{found:e} against {expected:e}");
+        assert!((found_frenet / expected_frenet - 1.0).abs() < 7e-4, "{found_frenet}");
+    }
+}
+
+#[test]
+fn a_straight_profile_sweeps_a_developable() {
+    let half = example_a().split(0.5).0;
+    let curvatures = |patch: &RationalPatch| -> Vec<f64> {
+        grid().map(|(u, v)| patch.jet(u, v).gaussian_curvature().unwrap()).collect()
+    };
+    let largest = curvatures(&rational(&half, &line())).iter().fold(0.0f64, |most, k| most.max(k.abs()));
+    assert!(largest < 1e-10, "K is the square of the error of the angular velocity, 1e-5: {largest:e}");
+    let least_frenet = curvatures(&frenet(&half, &line())).iter().fold(f64::INFINITY, |least, k| least.min(k.abs()));
+    assert!(least_frenet > 1e-2, "the Frenet frame's ruled surface is curved everywhere: {least_frenet}");
+    assert!(curvatures(&rational(&half, &line())).iter().all(|&k| k <= 1e-12), "ruled surfaces have no positive K");
+}
+
+#[test]
+fn error_against_the_exact_frame_is_golden() {
+    let cubic = example_a();
+    let patch = rational(&cubic, &profile());
+    let worst = grid()
+        .map(|(u, v)| {
+            let mut c = profile().control_points;
+            while c.len() > 1 {
+                c = c.windows(2).map(|pair| pair[0].lerp(pair[1], u)).collect();
+            }
+            let frame = cubic.frenet_frame(v).turned(cubic.rotation_to(v));
+            patch.jet(u, v).position.distance(cubic.position(v) + frame.offset(c[0].truncate()))
+        })
+        .fold(0.0, f64::max);
+    assert!((worst / 2.533e-6 - 1.0).abs() < 1e-3, "{worst:e}");
+}
+
+#[test]
+fn profile_curvature_is_that_of_the_patch() {
+    let cubic = example_a().split(0.5).0;
+    let patch = rational(&cubic, &profile());
+    for (u, v) in [(0.2, 0.3), (0.5, 0.5), (0.8, 0.9)] {
+        let points: Vec<DVec2> = profile().control_points.iter().map(|p| p.truncate()).collect();
+        let d: Vec<DVec2> = points.windows(2).map(|pair| 3.0 * (pair[1] - pair[0])).collect();
+        let dd: Vec<DVec2> = d.windows(2).map(|pair| 2.0 * (pair[1] - pair[0])).collect();
+        let evaluate = |mut c: Vec<DVec2>| {
+            while c.len() > 1 {
+                c = c.windows(2).map(|pair| pair[0].lerp(pair[1], u)).collect();
+            }
+            c[0]
+        };
+        let jet = ProfileJet { position: evaluate(points), first: evaluate(d), second: evaluate(dd) };
+        let frame = cubic.frenet_frame(v).turned(cubic.rotation_to(v));
+        let formula = profile_surface_curvature(&cubic.jet(v), &frame, &jet).unwrap();
+        let patch = patch.jet(u, v).gaussian_curvature().unwrap();
+        // The patch's angular velocity is off by 1e-5.
+        assert!((formula / patch - 1.0).abs() < 1e-3, "{formula} against {patch}");
+        assert!(formula * patch > 0.0);
+    }
+}
+
+#[test]
+fn the_torus_has_its_curvature_and_its_singular_bound() {
+    let (major, minor) = (2.0, 0.5);
+    let circle = TrigonometricCurve::helix(major, 0.0, (0.0, std::f64::consts::TAU));
+    let jet = circle.jet(0.4);
+    let frame = Frame::new(jet.normal().unwrap(), jet.tangent());
+    for angle in [0.0, 1.0, 2.5, std::f64::consts::PI] {
+        let (sin, cos) = libm::sincos(angle);
+        let profile = ProfileJet {
+            position: DVec2::new(minor * cos, minor * sin),
+            first: DVec2::new(-minor * sin, minor * cos),
+            second: DVec2::new(-minor * cos, -minor * sin),
+        };
+        // r points to the center: the inner equator is at angle 0, where K is negative.
+        let exact = -cos / (minor * (major - minor * cos));
+        let found = profile_surface_curvature(&jet, &frame, &profile).unwrap();
+        assert!((found - exact).abs() < 1e-14, "{found} against {exact}");
+        assert!((regularity(&jet, &frame, profile.position) - (1.0 - minor * cos / major)).abs() < 1e-15);
+    }
+    assert!((safe_profile_radius(&[jet]) - major).abs() < 1e-14);
+    let at_center = ProfileJet { position: DVec2::new(2.0, 0.0), first: DVec2::Y, second: DVec2::ZERO };
+    let margin = regularity(&jet, &frame, at_center.position);
+    assert!(margin.abs() < 1e-15, "the sweep stands still at the center of curvature");
+}
+
+#[test]
+fn grids_keep_the_order_of_stations_and_profile() {
+    let helix = TrigonometricCurve::helix(1.0, 0.4, (0.0, 2.0));
+    let parameters = [0.0, 1.0, 2.0];
+    let frames = exact_frames(&helix, &parameters, DVec3::Z).unwrap();
+    let stations: Vec<(DVec3, Frame)> = parameters.iter().map(|&u| helix.position(u)).zip(frames).collect();
+    let grid = sweep(&stations, &[DVec2::X, DVec2::new(0.0, 0.5)]);
+    assert_eq!((grid.rows, grid.columns, grid.points.len()), (3, 2, 6));
+    assert_eq!(grid.point(1, 1), stations[1].0 + stations[1].1.s * 0.5);
+    assert_eq!(grid.row(2)[0], stations[2].0 + stations[2].1.r);
+}
+
+#[test]
+fn straight_spines_have_no_patch() {
+    let line = PhCubic::hermite(DVec3::ZERO, DVec3::X, DVec3::X, DVec3::X).unwrap();
+    assert_eq!(RationalPatch::sweep(&line, &RationalRotation::FRENET, &profile(), 0.0), None);
+}
