@@ -22,11 +22,14 @@ pub use tree::Override;
 
 use tree::Node;
 
+use crate::scene::used_tools;
+
 /// What to deform, with which tools and strokes, how closely, and where to put the results.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Recipe {
     /// Version of the recipe's format: 1.
+    #[schemars(range(min = 1, max = 1))]
     pub recipe: u32,
     /// What is deformed.
     pub target: Target,
@@ -73,6 +76,7 @@ pub struct Target {
 #[serde(deny_unknown_fields, default)]
 pub struct Transform {
     /// Factor, above zero.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
     /// Axis x, y, z and angle in degrees, right-handed.
     pub rotate: [f64; 4],
@@ -93,6 +97,7 @@ pub struct Tool {
     /// The solid that moves.
     pub shape: ToolShape,
     /// How far beyond the surface the field reaches, model units.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub support: f64,
     /// How the field fades.
     #[serde(default)]
@@ -128,6 +133,7 @@ impl fmt::Display for Profile {
 pub struct Integrate {
     /// Travel of the fastest point of the tool's surface in one step, as a fraction of the support or of half the tool's
     /// shortest extent, whichever is less.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub step: f64,
 }
 
@@ -144,8 +150,10 @@ pub struct Refine {
     /// False leaves the triangles as they are.
     pub enabled: bool,
     /// Refines until the estimated error of the volume is below this share of the volume.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub volume: f64,
     /// Farthest that an edge's image may lie from a straight line, as a fraction of the longest side of the target's bounds.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub deviation: f64,
     /// Longest edge of the deformed mesh, model units; without it, 1.5 times the longest edge of the target.
     #[serde(skip_serializing_if = "is_default")]
@@ -209,6 +217,7 @@ pub struct Output {
 #[serde(deny_unknown_fields)]
 pub struct Frames {
     /// How many, the first and the last included.
+    #[schemars(range(min = 2))]
     pub count: u32,
     /// Folder that takes them, in the format of the output mesh and numbered from zero: `frame_0000.obj`.
     pub directory: String,
@@ -253,9 +262,11 @@ impl Recipe {
         serde_json::to_string_pretty(self).expect("a recipe has only strings for keys")
     }
 
-    /// The mesh files that it names, each once, in order of name.
+    /// The mesh files of its target and of the tools in use, each once, in order of name.
     pub fn mesh_names(&self) -> Vec<&str> {
-        let tools = self.tools.values().filter_map(|tool| match &tool.shape {
+        let used = used_tools(self);
+        let tools = self.tools.iter().filter(|(name, _)| used.contains(name.as_str()));
+        let tools = tools.filter_map(|(_, tool)| match &tool.shape {
             ToolShape::Mesh(shape) => Some(shape.mesh.as_str()),
             _ => None,
         });

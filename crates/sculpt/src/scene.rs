@@ -1,6 +1,248 @@
 //! The objects that a recipe's plain data describe.
 
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+    time::Instant,
+};
+
 use glam::{DQuat, DVec3};
+use isochore_field as field;
+use isochore_mesh::{
+    self as mesh, ClosedMesh, Distance, DistanceField, DistanceFieldError, DistanceFieldOptions, Monitor, Padding,
+    TriMesh, primitives,
+};
+
+use crate::{
+    recipe::{
+        Key, Profile, Recipe, RecipeError, RecipeProblem, Stroke, Target, TargetShape, Tool, ToolShape, Transform,
+    },
+    replay::{Meshes, ReplayError},
+};
+
+/// A recipe's target and strokes, ready to be put together.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// The target where it stands in the world.
+    pub target: TriMesh,
+    /// The strokes, in order.
+    pub strokes: Vec<field::Stroke>,
+    /// How they are to be applied.
+    pub options: field::DeformOptions,
+    /// What the user should know about how the recipe was understood.
+    pub warnings: Vec<String>,
+    /// Time that the distance grids of tool meshes took.
+    pub distance_seconds: f64,
+}
+
+impl Scene {
+    /// Makes the objects of `recipe`, whose mesh files are in `meshes`.
+    ///
+    /// # Errors
+    /// [`ReplayError`], naming the key of the recipe that cannot be followed.
+    pub fn build(recipe: &Recipe, meshes: &Meshes, monitor: &dyn Monitor) -> Result<Self, ReplayError> {
+        recipe.validate()?;
+        let target = target(&recipe.target, meshes)?;
+        if recipe.promise.volume.is_some()
+            && let Err(defect) = ClosedMesh::new(&target)
+        {
+            let text = format!("the target encloses no volume ({defect}); close it, or remove this promise");
+            return Err(RecipeError::new("promise.volume", RecipeProblem::Other(text)).into());
+        }
+        let mut workshop = Workshop { recipe, meshes, monitor, warnings: Vec::new() };
+        let start = Instant::now();
+        let strokes = workshop.strokes()?;
+        let refine = field::RefineOptions {
+            volume: recipe.refine.volume,
+            deviation: recipe.refine.deviation,
+            max_edge: recipe.refine.max_edge,
+            max_triangles: recipe.refine.max_triangles,
+        };
+        Ok(Self {
+            target,
+            strokes,
+            options: field::DeformOptions { refine: recipe.refine.enabled.then_some(refine), lock: recipe.volume.lock },
+            warnings: workshop.warnings,
+            distance_seconds: start.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// Makes the strokes of `recipe` alone, for points that are no mesh, and what the user should know about them.
+    ///
+    /// # Errors
+    /// [`ReplayError`], naming the key of the recipe that cannot be followed.
+    pub fn strokes(
+        recipe: &Recipe,
+        meshes: &Meshes,
+        monitor: &dyn Monitor,
+    ) -> Result<(Vec<field::Stroke>, Vec<String>), ReplayError> {
+        recipe.validate()?;
+        let mut workshop = Workshop { recipe, meshes, monitor, warnings: Vec::new() };
+        let strokes = workshop.strokes()?;
+        Ok((strokes, workshop.warnings))
+    }
+}
+
+struct Workshop<'a> {
+    recipe: &'a Recipe,
+    meshes: &'a Meshes,
+    monitor: &'a dyn Monitor,
+    warnings: Vec<String>,
+}
+
+impl Workshop<'_> {
+    fn strokes(&mut self) -> Result<Vec<field::Stroke>, ReplayError> {
+        let mut tools = BTreeMap::new();
+        for name in used_tools(self.recipe) {
+            tools.insert(name, Arc::new(self.tool(name, &self.recipe.tools[name])?));
+        }
+        let strokes = self.recipe.strokes.iter().enumerate();
+        strokes.map(|(index, stroke)| self.stroke(index, stroke, &tools)).collect()
+    }
+
+    fn stroke(
+        &self,
+        index: usize,
+        stroke: &Stroke,
+        tools: &BTreeMap<&str, Arc<field::Tool>>,
+    ) -> Result<field::Stroke, ReplayError> {
+        let stroke = match stroke {
+            Stroke::Move(motion) => {
+                let tool = Arc::clone(&tools[motion.tool.as_str()]);
+                let keys = motion.keys.iter().map(pose).collect();
+                field::Move::new(tool, keys, self.recipe.integrate.step).map(field::Stroke::Move)
+            }
+            Stroke::Twist(twist) => {
+                let [origin, axis] = [twist.origin, twist.axis].map(DVec3::from_array);
+                field::Twist::new(origin, axis, twist.degrees_per_unit.to_radians()).map(field::Stroke::Twist)
+            }
+            Stroke::Bend(bend) => {
+                let [origin, axis] = [bend.origin, bend.axis].map(DVec3::from_array);
+                field::Bend::new(origin, axis, bend.degrees_per_unit2.to_radians()).map(field::Stroke::Bend)
+            }
+        };
+        stroke.map_err(|source| ReplayError::Stroke { index, source })
+    }
+
+    fn tool(&mut self, name: &str, tool: &Tool) -> Result<field::Tool, ReplayError> {
+        let distance = self.distance(name, tool)?;
+        let profile = match tool.profile {
+            Profile::Quintic => field::Profile::Quintic,
+            Profile::Septic => field::Profile::Septic,
+            Profile::Quartic => field::Profile::Quartic,
+            Profile::Contact => field::Profile::Contact,
+            Profile::Thesis => field::Profile::Thesis,
+        };
+        field::Tool::new(distance, tool.support, profile)
+            .map_err(|source| ReplayError::Tool { name: name.to_owned(), source })
+    }
+
+    fn distance(&mut self, name: &str, tool: &Tool) -> Result<Arc<dyn Distance>, ReplayError> {
+        match &tool.shape {
+            ToolShape::Mesh(shape) => {
+                let placed = transformed(find(self.meshes, &shape.mesh)?, &shape.transform);
+                Ok(Arc::new(self.distance_field(name, &placed, shape.resolution, tool.support)?))
+            }
+            shape => analytic_distance(shape)
+                .map_err(|problem| RecipeError::new(&format!("tools.{name}.shape"), problem).into()),
+        }
+    }
+
+    fn distance_field(
+        &mut self,
+        name: &str,
+        mesh: &TriMesh,
+        resolution: u32,
+        support: f64,
+    ) -> Result<DistanceField, ReplayError> {
+        let least = least_resolution(mesh, support);
+        if f64::from(resolution) < least {
+            self.warnings.push(format!(
+                "tools.{name}.shape.resolution: raised from {resolution} to {least}, so that six cells fit into the support"
+            ));
+        }
+        // A cast to integer saturates; the memory limit sees to the rest.
+        let resolution = least.max(resolution.into()) as usize;
+        let options = DistanceFieldOptions { resolution, padding: Padding::Reach(support), ..Default::default() };
+        let field = DistanceField::new(mesh, &options, self.monitor).map_err(|error| match error {
+            DistanceFieldError::Cancelled(cancelled) => ReplayError::Cancelled(cancelled),
+            source => ReplayError::DistanceField { name: name.to_owned(), source },
+        })?;
+        if !field.is_closed() {
+            self.warnings.push(format!(
+                "tools.{name}.shape.mesh: the mesh is open; its inside is taken to be where its winding number is above one half"
+            ));
+        }
+        Ok(field)
+    }
+}
+
+/// Cells that fit into the support at least: with fewer, the kinks of the interpolant show in the field.
+const CELLS_PER_SUPPORT: f64 = 6.0;
+
+/// The fewest cells along the longest side of `mesh` that resolve a support of this width; a whole number.
+fn least_resolution(mesh: &TriMesh, support: f64) -> f64 {
+    (CELLS_PER_SUPPORT * mesh.bounds().size().max_element() / support).ceil()
+}
+
+/// Distance in closed form of every shape but a mesh.
+pub(crate) fn analytic_distance(shape: &ToolShape) -> Result<Arc<dyn Distance>, RecipeProblem> {
+    let vector = DVec3::from_array;
+    let distance: Result<Arc<dyn Distance>, mesh::ShapeError> = match shape {
+        ToolShape::Sphere(shape) => mesh::Sphere::new(shape.radius).map(|distance| Arc::new(distance) as _),
+        ToolShape::Capsule(shape) => {
+            mesh::Capsule::new(shape.radius, shape.half_length).map(|distance| Arc::new(distance) as _)
+        }
+        ToolShape::Box(shape) => {
+            mesh::RoundedBox::new(vector(shape.half_extents), shape.rounding).map(|distance| Arc::new(distance) as _)
+        }
+        ToolShape::Torus(shape) => mesh::Torus::new(shape.major, shape.minor).map(|distance| Arc::new(distance) as _),
+        ToolShape::Ellipsoid(shape) => {
+            mesh::Ellipsoid::new(vector(shape.radii)).map(|distance| Arc::new(distance) as _)
+        }
+        ToolShape::Mesh(_) => return Err(RecipeProblem::Other("a mesh has no distance in closed form".to_owned())),
+    };
+    distance.map_err(|error| RecipeProblem::Other(error.to_string()))
+}
+
+fn target(target: &Target, meshes: &Meshes) -> Result<TriMesh, ReplayError> {
+    let made;
+    let mesh = match (&target.mesh, &target.shape) {
+        (Some(name), _) => find(meshes, name)?,
+        (None, Some(shape)) => {
+            made = target_mesh(shape);
+            &made
+        }
+        (None, None) => return Err(RecipeError::new("target", RecipeProblem::NeitherMeshNorShape).into()),
+    };
+    // The identity would round too: the bits of a mesh that is not placed must be those of its file.
+    if target.transform == Transform::default() { Ok(mesh.clone()) } else { Ok(transformed(mesh, &target.transform)) }
+}
+
+fn target_mesh(shape: &TargetShape) -> TriMesh {
+    match shape {
+        TargetShape::Icosphere(shape) => primitives::icosphere(shape.radius, shape.subdivisions),
+        TargetShape::Box(shape) => {
+            primitives::box_mesh(DVec3::from_array(shape.half_extents), shape.segments.map(|count| count as usize))
+        }
+        TargetShape::Sphere(shape) => {
+            let [longitude, latitude] = shape.segments.map(|count| count as usize);
+            primitives::latitude_longitude_sphere(shape.radius, longitude, latitude)
+        }
+    }
+}
+
+fn find<'a>(meshes: &'a Meshes, name: &str) -> Result<&'a TriMesh, ReplayError> {
+    meshes.get(name).ok_or_else(|| ReplayError::MissingMesh { name: name.to_owned() })
+}
+
+fn transformed(mesh: &TriMesh, transform: &Transform) -> TriMesh {
+    mesh.transformed(transform.scale, rotation(transform.rotate), DVec3::from_array(transform.translate))
+}
+
+fn pose(key: &Key) -> field::Pose {
+    field::Pose { rotation: rotation(key.rotate), translation: DVec3::from_array(key.at) }
+}
 
 /// The rotation by an angle in degrees about an axis of any length, `[x, y, z, degrees]`.
 pub(crate) fn rotation(rotate: [f64; 4]) -> DQuat {
@@ -8,4 +250,13 @@ pub(crate) fn rotation(rotate: [f64; 4]) -> DQuat {
     let half = 0.5 * degrees.to_radians();
     let axis = DVec3::new(x, y, z).normalize_or_zero() * libm::sin(half);
     DQuat::from_xyzw(axis.x, axis.y, axis.z, libm::cos(half))
+}
+
+/// The tools that strokes name; the others need not even be read.
+pub(crate) fn used_tools(recipe: &Recipe) -> BTreeSet<&str> {
+    let tools = recipe.strokes.iter().filter_map(|stroke| match stroke {
+        Stroke::Move(motion) => Some(motion.tool.as_str()),
+        Stroke::Twist(_) | Stroke::Bend(_) => None,
+    });
+    tools.collect()
 }

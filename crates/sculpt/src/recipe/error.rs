@@ -9,8 +9,8 @@ pub struct RecipeError {
     pub location: Location,
     /// Dotted path of the key, elements of lists by their number from zero (`stroke.0.keys.1.at`); empty for the recipe as a whole.
     pub key: String,
-    /// What is wrong with it.
-    pub problem: RecipeProblem,
+    /// What is wrong with it; boxed, because most results are no errors and should stay small.
+    pub problem: Box<RecipeProblem>,
 }
 
 /// Where in its source a value was written.
@@ -162,7 +162,7 @@ impl fmt::Display for RecipeError {
 
 impl RecipeError {
     pub(crate) fn new(key: &str, problem: RecipeProblem) -> Self {
-        Self { location: Location::Unknown, key: key.to_owned(), problem }
+        Self { location: Location::Unknown, key: key.to_owned(), problem: Box::new(problem) }
     }
 
     pub(crate) fn at(self, location: Location) -> Self {

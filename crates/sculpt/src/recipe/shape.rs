@@ -24,6 +24,7 @@ tagged!(TargetShape { "icosphere" => Icosphere(Icosphere), "box" => Box(BoxMesh)
 #[serde(deny_unknown_fields)]
 pub struct Icosphere {
     /// Distance of the vertices from the origin, model units.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// How often each triangle is split into four; 20 · 4ⁿ triangles.
     pub subdivisions: u32,
@@ -44,6 +45,7 @@ pub struct BoxMesh {
 #[serde(deny_unknown_fields)]
 pub struct SphereMesh {
     /// Distance of the vertices from the origin, model units.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// Cells round the equator, and from pole to pole.
     pub segments: [u32; 2],
@@ -81,6 +83,7 @@ tagged!(ToolShape {
 #[serde(deny_unknown_fields)]
 pub struct Sphere {
     /// Radius, model units.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
 }
 
@@ -89,6 +92,7 @@ pub struct Sphere {
 #[serde(deny_unknown_fields)]
 pub struct Capsule {
     /// Distance of the surface from the segment, model units.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// The segment runs from `-half_length` to `half_length`, model units.
     pub half_length: f64,
@@ -110,8 +114,10 @@ pub struct RoundedBox {
 #[serde(deny_unknown_fields)]
 pub struct Torus {
     /// Radius of the ring's center line, model units.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub major: f64,
     /// Distance of the surface from that line, model units.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub minor: f64,
 }
 
@@ -131,6 +137,7 @@ pub struct MeshTool {
     pub mesh: String,
     /// Cells of the distance grid along the longest side of the mesh, padding not counted. More are taken where a cell would be
     /// longer than a sixth of the support.
+    #[schemars(range(min = 4, max = 1024))]
     pub resolution: u32,
     /// Placement of the mesh in the tool's coordinates.
     #[serde(default, skip_serializing_if = "super::is_default")]

@@ -1,0 +1,138 @@
+//! Carrying out a recipe on loaded meshes or on bare points.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use isochore_field as field;
+use isochore_mesh::{Cancelled, DistanceFieldError, Monitor, TriMesh};
+
+use crate::{
+    recipe::{Recipe, RecipeError},
+    scene::Scene,
+};
+
+/// Loaded meshes by the name that the recipe gives them.
+pub type Meshes = BTreeMap<String, TriMesh>;
+
+/// What became of the target.
+#[derive(Debug, Clone)]
+pub struct Replay {
+    /// The target before, and everything else that the recipe describes.
+    pub scene: Scene,
+    /// The deformed mesh and the account of how it came about.
+    pub deformed: field::Deformed,
+}
+
+/// What became of points that are no mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointReplay {
+    /// The points, in the order in which they came.
+    pub points: Vec<DVec3>,
+    /// What of the recipe does not apply to points.
+    pub warnings: Vec<String>,
+}
+
+/// Deforms the target of `recipe`, whose mesh files are in `meshes` by [their names](Recipe::mesh_names).
+///
+/// # Errors
+/// [`ReplayError`], naming the key of the recipe that cannot be followed.
+pub fn replay(recipe: &Recipe, meshes: &Meshes, monitor: &dyn Monitor) -> Result<Replay, ReplayError> {
+    let scene = Scene::build(recipe, meshes, monitor)?;
+    let deformed = field::deform(&scene.target, &scene.strokes, &scene.options, monitor)?;
+    Ok(Replay { scene, deformed })
+}
+
+/// Carries `points`, in world coordinates, along the strokes of `recipe`. Its target is not looked at.
+///
+/// A point set has no volume: the lock is left out, so that points agree with the vertices of a mesh before its lock.
+///
+/// # Errors
+/// [`ReplayError`], naming the key of the recipe that cannot be followed.
+pub fn replay_points(
+    recipe: &Recipe,
+    meshes: &Meshes,
+    points: &[DVec3],
+    monitor: &dyn Monitor,
+) -> Result<PointReplay, ReplayError> {
+    let (strokes, mut warnings) = Scene::strokes(recipe, meshes, monitor)?;
+    if recipe.volume.lock {
+        warnings.push("points enclose no volume: the volume lock was left out".to_owned());
+    }
+    Ok(PointReplay { points: field::flow_points(points, &strokes, monitor)?, warnings })
+}
+
+/// Why a recipe could not be carried out.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplayError {
+    /// The recipe is wrong in itself or does not go with its target.
+    #[error(transparent)]
+    Recipe(#[from] RecipeError),
+    /// A mesh that the recipe names was not given.
+    #[error("the mesh `{name}` was not loaded")]
+    MissingMesh {
+        /// Its name in the recipe.
+        name: String,
+    },
+    /// The distance to a tool's mesh cannot be sampled.
+    #[error("tools.{name}.shape: {source}")]
+    DistanceField {
+        /// Name of the tool.
+        name: String,
+        /// Why not.
+        source: DistanceFieldError,
+    },
+    /// A tool cannot be made.
+    #[error("tools.{name}: {source}")]
+    Tool {
+        /// Its name in the recipe.
+        name: String,
+        /// Why not.
+        source: field::ToolError,
+    },
+    /// A stroke cannot be made.
+    #[error("stroke.{index}: {source}")]
+    Stroke {
+        /// Its number, from zero.
+        index: usize,
+        /// Why not.
+        source: field::StrokeError,
+    },
+    /// The target cannot be deformed.
+    #[error("target: {0}")]
+    Deform(#[source] field::DeformError),
+    /// The monitor asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl From<field::DeformError> for ReplayError {
+    fn from(error: field::DeformError) -> Self {
+        match error {
+            field::DeformError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Deform(error),
+        }
+    }
+}
+
+impl Replay {
+    /// The mesh part of the way through the strokes, with the triangles of the finished one.
+    ///
+    /// Of `count` frames, at least two, the one with `index` 0 is at rest and the last is the finished mesh. Each stroke takes as
+    /// many frames as any other, and the volume lock, where the recipe asks for it, acts in each.
+    ///
+    /// # Errors
+    /// [`ReplayError::Cancelled`] and [`ReplayError::Deform`].
+    pub fn frame(&self, index: u32, count: u32, monitor: &dyn Monitor) -> Result<TriMesh, ReplayError> {
+        let strokes = &self.scene.strokes;
+        let time = strokes.len() as f64 * (f64::from(index) / f64::from(count.saturating_sub(1).max(1)));
+        let whole = (time as usize).min(strokes.len());
+        let mut so_far = strokes[..whole].to_vec();
+        if let Some(stroke) = strokes.get(whole)
+            && time > whole as f64
+        {
+            so_far.push(stroke.truncated(time - whole as f64));
+        }
+        let options = field::DeformOptions { refine: None, lock: self.scene.options.lock };
+        Ok(field::deform(&self.deformed.rest, &so_far, &options, monitor)?.mesh)
+    }
+}

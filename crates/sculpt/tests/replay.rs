@@ -1,0 +1,169 @@
+//! Recipes carried out on meshes and points.
+
+use glam::DVec3;
+use isochore_mesh::{Cancelled, Monitor, Silent, TriMesh, primitives};
+use isochore_sculpt::{
+    Meshes, Recipe, ReplayError, Report, Source,
+    recipe::{Format, Override},
+    replay, replay_points,
+};
+
+/// A press by a ball and a twist, without lock and refinement.
+const BARE: &str = r#"
+recipe = 1
+target = { mesh = "target" }
+[tools.ball]
+shape = { kind = "sphere", radius = 0.4 }
+support = 0.3
+[[stroke]]
+kind = "move"
+tool = "ball"
+keys = [ { at = [0, 0, 1.8] }, { at = [0, 0, 1.2] } ]
+[[stroke]]
+kind = "twist"
+origin = [0, 0, 0]
+axis = [0, 0, 2]
+degrees_per_unit = 20
+[refine]
+enabled = false
+[volume]
+lock = false
+"#;
+
+fn recipe(settings: &[&str]) -> Recipe {
+    let overrides: Vec<Override> = settings.iter().map(|text| Override::parse(text).unwrap()).collect();
+    Recipe::parse(BARE, Format::Toml, &overrides).unwrap()
+}
+
+fn meshes(target: TriMesh) -> Meshes {
+    Meshes::from([("target".to_owned(), target)])
+}
+
+#[test]
+fn points_move_as_vertices_do() {
+    let meshes = meshes(primitives::icosphere(1.0, 3));
+    let recipe = recipe(&[]);
+    let mesh = replay(&recipe, &meshes, &Silent).unwrap().deformed.mesh;
+    let points = replay_points(&recipe, &Meshes::new(), &meshes["target"].positions, &Silent).unwrap();
+    assert_eq!(points.points, mesh.positions);
+    assert!(points.warnings.is_empty());
+    assert_ne!(mesh.positions, meshes["target"].positions);
+}
+
+#[test]
+fn a_finer_mesh_agrees_where_they_meet() {
+    let recipe = recipe(&["refine.enabled=true"]);
+    let [coarse, fine] = [2, 4].map(|subdivisions| {
+        let meshes = meshes(primitives::icosphere(1.0, subdivisions));
+        replay(&recipe, &meshes, &Silent).unwrap().deformed.mesh
+    });
+    // Subdivision leaves the vertices that are there in front, unchanged.
+    let common = primitives::icosphere(1.0, 2).positions.len();
+    assert_eq!(coarse.positions[..common], fine.positions[..common]);
+}
+
+#[test]
+fn points_have_no_lock_and_are_told_so() {
+    let recipe = recipe(&["volume.lock=true"]);
+    let points = replay_points(&recipe, &Meshes::new(), &[DVec3::ZERO], &Silent).unwrap();
+    assert!(points.warnings[0].contains("lock"), "{:?}", points.warnings);
+}
+
+#[test]
+fn targets_are_scaled_then_rotated_then_moved() {
+    let transform = "target.transform={ scale = 2, rotate = [0, 0, 3, 90], translate = [10, 0, 0] }";
+    let mesh =
+        TriMesh { positions: vec![DVec3::X, DVec3::Y, DVec3::Z], triangles: vec![[0, 1, 2]], ..TriMesh::default() };
+    let target = replay(&recipe(&[transform]), &meshes(mesh), &Silent).unwrap().scene.target;
+    let expected = [DVec3::new(10.0, 2.0, 0.0), DVec3::new(8.0, 0.0, 0.0), DVec3::new(10.0, 0.0, 2.0)];
+    for (found, expected) in target.positions.iter().zip(expected) {
+        // Coordinates of ten round at 2e-15.
+        assert!(found.distance(expected) < 1e-14, "{found} {expected}");
+    }
+}
+
+#[test]
+fn frames_lead_from_rest_to_the_finished_mesh() {
+    for lock in ["volume.lock=false", "volume.lock=true"] {
+        let recipe = recipe(&[lock, "refine.enabled=true"]);
+        let replay = replay(&recipe, &meshes(primitives::icosphere(1.0, 3)), &Silent).unwrap();
+        let frames: Vec<TriMesh> = (0..5).map(|index| replay.frame(index, 5, &Silent).unwrap()).collect();
+        assert_eq!(frames[0], replay.deformed.rest);
+        assert_eq!(frames[4], replay.deformed.mesh);
+        // Half of the time is the first of the two strokes.
+        let mut first = recipe.clone();
+        first.strokes.truncate(1);
+        first.refine.enabled = false;
+        let rest = meshes(replay.deformed.rest.clone());
+        assert_eq!(frames[2], isochore_sculpt::replay(&first, &rest, &Silent).unwrap().deformed.mesh);
+        assert!(frames.windows(2).all(|pair| pair[0].positions != pair[1].positions));
+    }
+}
+
+#[test]
+fn errors_name_what_cannot_be_followed() {
+    let error = |settings: &[&str], meshes: &Meshes| match replay(&recipe(settings), meshes, &Silent) {
+        Ok(_) => panic!("{settings:?}"),
+        Err(error) => error.to_string(),
+    };
+    let sphere = meshes(primitives::icosphere(1.0, 1));
+    assert!(error(&[], &Meshes::new()).contains("`target` was not loaded"));
+    let tool = "tools.ball.shape={ kind = \"mesh\", mesh = \"king\", resolution = 16 }";
+    assert!(error(&[tool], &sphere).contains("`king` was not loaded"));
+    let mut open = primitives::icosphere(1.0, 1);
+    open.triangles.pop();
+    assert!(error(&["promise.volume=0.1"], &meshes(open)).starts_with("promise.volume: the target encloses no volume"));
+    assert!(error(&["integrate.step=1e-300"], &sphere).starts_with("stroke.0: "));
+}
+
+#[test]
+fn tools_that_no_stroke_uses_are_not_read() {
+    let mut recipe = recipe(&[]);
+    let king = Recipe::parse(
+        &BARE.replace("{ kind = \"sphere\", radius = 0.4 }", "{ kind = \"mesh\", mesh = \"king\", resolution = 16 }"),
+        Format::Toml,
+        &[],
+    );
+    assert_eq!(king.as_ref().unwrap().mesh_names(), ["king", "target"]);
+    recipe.tools.insert("king".to_owned(), king.unwrap().tools["ball"].clone());
+    assert_eq!(recipe.mesh_names(), ["target"]);
+    replay(&recipe, &meshes(primitives::icosphere(1.0, 1)), &Silent).unwrap();
+}
+
+#[test]
+fn reports_are_measured_on_the_mesh_as_written() {
+    let recipe = recipe(&["promise.volume=0.01", "promise.no_new_self_intersections=true"]);
+    let replay = replay(&recipe, &meshes(primitives::icosphere(1.0, 3)), &Silent).unwrap();
+    let source = Source { text: b"abc", overrides: &[] };
+    let mut written = replay.deformed.mesh.clone();
+    let report = Report::new(&recipe, source, &replay, &written, &Silent).unwrap();
+    assert_eq!(report.missed_promises().count(), 0, "{:?} {:?}", report.promises, report.volume_change);
+    assert_eq!(report.promises.len(), 2);
+    assert_eq!(report.recipe_sha256, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+
+    // A file that holds another mesh than the one in memory is judged by what it holds.
+    written.positions.iter_mut().for_each(|position| *position *= 1.1);
+    let report = Report::new(&recipe, source, &replay, &written, &Silent).unwrap();
+    assert_eq!(report.missed_promises().collect::<Vec<_>>(), ["volume"]);
+    // 1.1³ − 1, to the precision that the deformation left of the volume.
+    assert!((report.volume_change.unwrap() - 0.331).abs() < 0.02);
+
+    written.triangles.pop();
+    let report = Report::new(&recipe, source, &replay, &written, &Silent).unwrap();
+    assert_eq!((report.after.closed, report.after.volume, report.volume_change), (false, None, None));
+    assert_eq!(report.promises["volume"], false);
+    let json = serde_json::to_string(&report).unwrap();
+    assert_eq!(serde_json::from_str::<Report>(&json).unwrap(), report);
+}
+
+#[test]
+fn work_can_be_cancelled() {
+    struct Stop;
+    impl Monitor for Stop {
+        fn is_cancelled(&self) -> bool {
+            true
+        }
+    }
+    let result = replay(&recipe(&[]), &meshes(primitives::icosphere(1.0, 3)), &Stop);
+    assert!(matches!(result, Err(ReplayError::Cancelled(Cancelled))));
+}
