@@ -3,12 +3,15 @@
 mod closest_point;
 mod unit_frame;
 
+#[cfg(test)]
+mod tests;
+
 use glam::{DVec3, Vec3A};
 use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
 pub use closest_point::{ClosestPoint, Feature};
-pub(crate) use closest_point::{SquaredDistance, closest_on_triangle};
+pub(crate) use closest_point::{OnTriangle, SquaredDistance, closest_on_triangle};
 pub(crate) use unit_frame::UnitFrame;
 
 /// Triangles in a leaf at most: one test of the box for all of them. A kernel for many points amortizes well with 2 to 6.

@@ -8,10 +8,15 @@ mod sampling;
 mod signs;
 mod spline;
 
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::bvh::UnitFrame;
+use crate::mesh_distance::{surface_bounds, surface_centroid, winding_is_whole};
 use crate::{Aabb, Bvh, BvhError, Cancelled, Distance, DistanceBlock, Monitor, PointBlock, TriMesh, WindingNumber};
 
 pub use grid::Grid;
@@ -137,15 +142,15 @@ impl DistanceField {
         options: &DistanceFieldOptions,
         monitor: &dyn Monitor,
     ) -> Result<Self, DistanceFieldError> {
-        let bvh = Bvh::new(&mesh.positions, &mesh.triangles)?;
-        let surface = Aabb::of(mesh.triangles.iter().flatten().map(|&vertex| mesh.positions[vertex as usize]));
+        let bvh = Arc::new(Bvh::new(&mesh.positions, &mesh.triangles)?);
+        let surface = surface_bounds(mesh);
         let grid = Grid::around(surface, options.resolution, options.padding)?;
         let bytes = (grid.len() as u64).saturating_mul(BYTES_PER_NODE);
         if bytes > options.memory_limit || grid.len() > u32::MAX as usize {
             return Err(DistanceFieldError::Memory { dims: grid.dims, bytes, limit: options.memory_limit });
         }
-        let is_closed = is_closed(&mesh.triangles);
-        let (volume, centroid) = volume_and_centroid(&bvh);
+        let is_closed = winding_is_whole(&mesh.triangles);
+        let volume = mesh.volume();
         if is_closed && volume < 0.0 {
             return Err(DistanceFieldError::InsideOut { volume });
         }
@@ -163,6 +168,7 @@ impl DistanceField {
         };
         monitor.check("spline", 0.0)?;
         let interpolant = Interpolant::new(&grid, &samples);
+        let centroid = surface_centroid(mesh);
         Ok(Self { grid, samples, sample_error, interpolant, surface, centroid, reach, is_closed })
     }
 
@@ -214,12 +220,12 @@ impl Distance for DistanceField {
 fn sign(
     samples: &mut [f32],
     sample_error: f64,
-    bvh: &Bvh,
+    bvh: &Arc<Bvh>,
     grid: &Grid,
     is_closed: bool,
     monitor: &dyn Monitor,
 ) -> Result<(), Cancelled> {
-    let winding_number = WindingNumber::new(bvh);
+    let winding_number = WindingNumber::new(bvh.clone());
     if is_closed {
         let regions = signs::Regions::new(grid, samples, sample_error);
         let representatives = regions.representatives(samples);
@@ -247,48 +253,6 @@ fn sign(
         })
     }
 }
-
-/// Whether no edge is left over when opposite directions cancel.
-fn is_closed(triangles: &[[u32; 3]]) -> bool {
-    let mut edges: Vec<(u32, u32, bool)> = (triangles.par_iter())
-        .flat_map_iter(|&[a, b, c]| [(a, b), (b, c), (c, a)])
-        .filter(|(from, to)| from != to)
-        .map(|(from, to)| (from.min(to), from.max(to), from < to))
-        .collect();
-    edges.par_sort_unstable();
-    edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|uses| {
-        let forward = uses.iter().filter(|edge| edge.2).count();
-        2 * forward == uses.len()
-    })
-}
-
-/// Signed volume and centroid of the volume; centroid of the area where the volume is too small to have one.
-fn volume_and_centroid(bvh: &Bvh) -> (f64, DVec3) {
-    // In the unit frame, so that nothing cancels far from the origin.
-    let (mut volume, mut moment) = (0.0, DVec3::ZERO);
-    let (mut area, mut area_moment) = (0.0, DVec3::ZERO);
-    for &[a, b, c] in bvh.corners() {
-        let part = a.dot(b.cross(c)) / 6.0;
-        volume += part;
-        moment += part * (a + b + c) / 4.0;
-        let part = 0.5 * (b - a).cross(c - a).length();
-        area += part;
-        area_moment += part * (a + b + c) / 3.0;
-    }
-    let frame: &UnitFrame = bvh.frame();
-    let local = if volume.abs() > LEAST_VOLUME {
-        moment / volume
-    } else if area > 0.0 {
-        area_moment / area
-    } else {
-        DVec3::ZERO
-    };
-    (volume / (frame.scale() * frame.scale() * frame.scale()), frame.outward(local))
-}
-
-/// Share of the bounding cube below which a volume has no centroid worth the name. Larger: thin sheets would get the centroid of
-/// their area. Smaller: rounding could put the centroid anywhere.
-const LEAST_VOLUME: f64 = 1e-9;
 
 /// At the border of the grid, beyond which the field is cut off, the distance must exceed the reach.
 fn check_border(grid: &Grid, samples: &[f32], reach: f64) -> Result<(), DistanceFieldError> {

@@ -5,7 +5,11 @@
 //! sum over clusters. Unlike there, every cluster comes with a bound on the error of its expansion, and clusters are opened until
 //! the bound allows an answer.
 
+#[cfg(test)]
+mod tests;
+
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -17,9 +21,9 @@ use crate::Bvh;
 const OPENINGS: [f64; 4] = [0.25, 0.1, 0.03, 0.0];
 
 /// Winding numbers with respect to the triangles of a [`Bvh`].
-#[derive(Debug)]
-pub struct WindingNumber<'a> {
-    bvh: &'a Bvh,
+#[derive(Debug, Clone)]
+pub struct WindingNumber {
+    bvh: Arc<Bvh>,
     /// One a node.
     clusters: Vec<Cluster>,
 }
@@ -39,9 +43,9 @@ struct Cluster {
     first_moment: DMat3,
 }
 
-impl<'a> WindingNumber<'a> {
+impl WindingNumber {
     /// Prepares the clusters.
-    pub fn new(bvh: &'a Bvh) -> Self {
+    pub fn new(bvh: Arc<Bvh>) -> Self {
         let mut clusters = vec![Cluster::EMPTY; bvh.nodes().len()];
         // Children come after their parents.
         for (i, node) in bvh.nodes().iter().enumerate().rev() {

@@ -66,9 +66,9 @@ fn sample_slab(
             });
             let mut packet = Packet::new(points);
             search.search(&mut packet, &guesses, &mut stack);
-            for lane in 0..LANES {
+            for (lane, &point) in points.iter().enumerate() {
                 let [i, j, k] = node(lane);
-                let (_, squared) = closest_on_triangle(points[lane], &bvh.corners()[packet.slot[lane] as usize]);
+                let (_, squared) = closest_on_triangle(point, &bvh.corners()[packet.slot[lane] as usize]);
                 samples[(k * ny + j) * nx + i] = (squared.sqrt() / frame.scale()) as f32;
             }
             guesses.clear();

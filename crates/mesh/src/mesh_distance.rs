@@ -1,0 +1,164 @@
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::bvh::closest_on_triangle;
+use crate::pseudo_normals::PseudoNormals;
+use crate::{
+    Aabb, Bvh, ClosestPoint, Distance, DistanceBlock, LANES, Monitor, PointBlock, SelfIntersectionError,
+    SelfIntersections, TriMesh, WindingNumber,
+};
+
+/// Height over longest edge of a triangle below which its normal is not trusted with signs. Larger: meshes with needles would be
+/// judged by winding number, which is slower. Smaller: rounding turns such a normal by 1e-16 over this number.
+const NEEDLE: f64 = 1e-6;
+
+/// The exact signed distance to a mesh, one query of its hierarchy at a time.
+///
+/// Inside is where the winding number exceeds one half. Of a single closed, oriented manifold that does not cross itself, and has no
+/// needles, the nearest feature tells the same faster.
+#[derive(Debug, Clone)]
+pub struct MeshDistance {
+    bvh: Arc<Bvh>,
+    sides: Sides,
+    bounds: Aabb,
+    centroid: DVec3,
+}
+
+/// How inside and outside are told apart.
+#[derive(Debug, Clone)]
+enum Sides {
+    PseudoNormals(Box<PseudoNormals>),
+    WindingNumber(WindingNumber),
+}
+
+impl MeshDistance {
+    /// Prepares the distance to `mesh`, and looks whether the fast way to tell inside from outside can be trusted.
+    ///
+    /// # Errors
+    /// See [`SelfIntersectionError`].
+    pub fn new(mesh: &TriMesh, monitor: &dyn Monitor) -> Result<Self, SelfIntersectionError> {
+        let bvh = Arc::new(Bvh::new(&mesh.positions, &mesh.triangles)?);
+        let is_simple = is_simple(mesh) && SelfIntersections::among(&bvh, &mesh.positions, monitor)?.is_empty();
+        let sides = if is_simple {
+            Sides::PseudoNormals(Box::new(PseudoNormals::new(&bvh, mesh.positions.len())))
+        } else {
+            Sides::WindingNumber(WindingNumber::new(bvh.clone()))
+        };
+        Ok(Self { bounds: surface_bounds(mesh), centroid: surface_centroid(mesh), bvh, sides })
+    }
+
+    /// The nearest point of the mesh.
+    pub fn closest_point(&self, point: DVec3) -> ClosestPoint {
+        self.bvh.closest_point(point)
+    }
+
+    /// Whether `point` lies inside.
+    pub fn is_inside(&self, point: DVec3) -> bool {
+        match &self.sides {
+            Sides::PseudoNormals(normals) => {
+                let local = self.bvh.frame().inward(point);
+                let slot = self.bvh.nearest(local, None).slot;
+                let (nearest, _) = closest_on_triangle(local, &self.bvh.corners()[slot as usize]);
+                normals.is_inside(&self.bvh, local, slot, &nearest)
+            }
+            Sides::WindingNumber(winding_number) => winding_number.is_inside(point),
+        }
+    }
+
+    /// Whether inside and outside are told apart by the nearest feature alone.
+    pub fn uses_pseudo_normals(&self) -> bool {
+        matches!(self.sides, Sides::PseudoNormals(_))
+    }
+
+    fn signed(&self, point: DVec3) -> (f64, DVec3) {
+        let local = self.bvh.frame().inward(point);
+        let found = self.bvh.nearest(local, None);
+        let (nearest, _) = closest_on_triangle(local, &self.bvh.corners()[found.slot as usize]);
+        let is_inside = match &self.sides {
+            Sides::PseudoNormals(normals) => normals.is_inside(&self.bvh, local, found.slot, &nearest),
+            Sides::WindingNumber(winding_number) => winding_number.is_inside(point),
+        };
+        let sign = if is_inside { -1.0 } else { 1.0 };
+        let gradient = (local - nearest.point).normalize_or_zero() * sign;
+        (sign * found.squared.sqrt() / self.bvh.frame().scale(), gradient)
+    }
+}
+
+impl Distance for MeshDistance {
+    /// On the mesh the gradient is zero.
+    fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
+        for lane in 0..LANES {
+            let (value, gradient) = self.signed(points.get(lane));
+            out.value[lane] = value;
+            out.gradient.set(lane, gradient);
+        }
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Centroid of the volume; of the area, if the mesh is open or encloses nothing.
+    fn centroid(&self) -> DVec3 {
+        self.centroid
+    }
+}
+
+/// Whether a mesh bounds one connected volume, if it does not cross itself, and has trustworthy normals.
+fn is_simple(mesh: &TriMesh) -> bool {
+    let check = mesh.check();
+    check.is_closed()
+        && check.is_oriented()
+        && check.is_manifold()
+        && mesh.components().count == 1
+        && mesh.volume() > 0.0
+        && (0..mesh.triangles.len()).all(|triangle| {
+            let [a, b, c] = mesh.corners(triangle);
+            let longest2 = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+            (b - a).cross(c - a).length() > NEEDLE * longest2
+        })
+}
+
+/// The box around all triangles; vertices without any do not count.
+pub(crate) fn surface_bounds(mesh: &TriMesh) -> Aabb {
+    Aabb::of(mesh.triangles.iter().flatten().map(|&vertex| mesh.positions[vertex as usize]))
+}
+
+/// Centroid of the volume inside a closed mesh; of the area, if it is open or encloses nothing.
+pub(crate) fn surface_centroid(mesh: &TriMesh) -> DVec3 {
+    let bounds = surface_bounds(mesh);
+    let size = bounds.size().max_element();
+    if winding_is_whole(&mesh.triangles) && mesh.volume().abs() > LEAST_VOLUME * size * size * size {
+        return mesh.volume_centroid();
+    }
+    // About the center, so that nothing cancels far from the origin.
+    let center = bounds.center();
+    let (area, moment) = (0..mesh.triangles.len()).fold((0.0, DVec3::ZERO), |(area, moment), triangle| {
+        let [a, b, c] = mesh.corners(triangle).map(|corner| corner - center);
+        let part = (b - a).cross(c - a).length();
+        (area + part, moment + part * (a + b + c) / 3.0)
+    });
+    if area > 0.0 { center + moment / area } else { center }
+}
+
+/// Share of the bounding cube below which a volume has no centroid worth the name. Larger: thin sheets would get the centroid of
+/// their area. Smaller: rounding could put the centroid anywhere.
+const LEAST_VOLUME: f64 = 1e-9;
+
+/// Whether no edge is left over when opposite directions cancel. Then winding numbers are whole off the surface.
+pub(crate) fn winding_is_whole(triangles: &[[u32; 3]]) -> bool {
+    let mut edges: Vec<(u32, u32, bool)> = (triangles.iter())
+        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
+        .filter(|(from, to)| from != to)
+        .map(|(from, to)| (from.min(to), from.max(to), from < to))
+        .collect();
+    edges.sort_unstable();
+    edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|uses| {
+        let forward = uses.iter().filter(|edge| edge.2).count();
+        2 * forward == uses.len()
+    })
+}

@@ -1,0 +1,62 @@
+use glam::DVec3;
+
+use crate::bvh::OnTriangle;
+use crate::{Bvh, Feature, Topology};
+
+/// Normals of faces, edges and vertices that tell on which side of the surface a point lies, whatever feature it is nearest to.
+///
+/// An edge has the sum of its two faces' unit normals, a vertex the sum of those around it weighted by their angles. J. Bærentzen and
+/// H. Aanæs, *Signed Distance Computation Using the Angle Weighted Pseudonormal* (2005). Valid for closed, oriented manifolds
+/// that do not cross themselves; lengths do not matter.
+#[derive(Debug, Clone)]
+pub(crate) struct PseudoNormals {
+    /// In leaf order.
+    faces: Vec<DVec3>,
+    edges: Vec<DVec3>,
+    vertices: Vec<DVec3>,
+    topology: Topology,
+}
+
+impl PseudoNormals {
+    /// Normals of a surface with this many vertices.
+    pub(crate) fn new(bvh: &Bvh, vertices: usize) -> Self {
+        let topology = Topology::of_triangles(bvh.triangles(), vertices);
+        let faces: Vec<DVec3> =
+            bvh.corners().iter().map(|&[a, b, c]| (b - a).cross(c - a).normalize_or_zero()).collect();
+        let mut normals = Self {
+            edges: vec![DVec3::ZERO; topology.edges.len()],
+            vertices: vec![DVec3::ZERO; vertices],
+            faces,
+            topology,
+        };
+        for (slot, (triangle, corners)) in bvh.triangles().iter().zip(bvh.corners()).enumerate() {
+            let normal = normals.faces[slot];
+            for edge in normals.topology.triangle_edges(slot) {
+                normals.edges[edge as usize] += normal;
+            }
+            for k in 0..3 {
+                let (to_next, to_last) = (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
+                let angle = libm::atan2(to_next.cross(to_last).length(), to_next.dot(to_last));
+                normals.vertices[triangle[k] as usize] += normal * angle;
+            }
+        }
+        normals
+    }
+
+    /// Whether a point of the unit frame lies inside, given its nearest triangle and the nearest point there.
+    pub(crate) fn is_inside(&self, bvh: &Bvh, point: DVec3, slot: u32, nearest: &OnTriangle) -> bool {
+        let slot = slot as usize;
+        match nearest.feature {
+            // From a corner, because the offset from the nearest point is all rounding close to the surface.
+            Feature::Face => self.faces[slot].dot(point - bvh.corners()[slot][0]) < 0.0,
+            Feature::Edge(k) => {
+                let edge = self.topology.triangle_edges(slot)[k as usize];
+                self.edges[edge as usize].dot(point - nearest.point) < 0.0
+            }
+            Feature::Vertex(k) => {
+                let vertex = bvh.triangles()[slot][k as usize];
+                self.vertices[vertex as usize].dot(point - nearest.point) < 0.0
+            }
+        }
+    }
+}
