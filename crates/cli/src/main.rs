@@ -1,2 +1,7 @@
 //! The `isochore` command.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    isochore::main(std::env::args_os())
+}

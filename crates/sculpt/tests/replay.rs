@@ -151,7 +151,7 @@ fn reports_are_measured_on_the_mesh_as_written() {
     written.triangles.pop();
     let report = Report::new(&recipe, source, &replay, &written, &Silent).unwrap();
     assert_eq!((report.after.closed, report.after.volume, report.volume_change), (false, None, None));
-    assert_eq!(report.promises["volume"], false);
+    assert!(!report.promises["volume"]);
     let json = serde_json::to_string(&report).unwrap();
     assert_eq!(serde_json::from_str::<Report>(&json).unwrap(), report);
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 fn check(name: &str, schema: Schema) {
     let path = format!("{}/../../schema/{name}.json", env!("CARGO_MANIFEST_DIR"));
     let published: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
-    assert!(published == Value::from(schema), "{path} is out of date: cargo run -- schema {name} > schema/{name}.json");
+    assert!(published == schema, "{path} is out of date: cargo run -- schema {name} > schema/{name}.json");
 }
 
 #[test]

@@ -1,0 +1,100 @@
+//! What ends a command without a result.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+use isochore_mesh::{
+    Cancelled,
+    io::{ReadError, WriteError},
+};
+use isochore_sculpt::{
+    ReplayError,
+    recipe::{Location, RecipeError},
+};
+
+/// Why a command did not do its work.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum CommandError {
+    #[error("{0}")]
+    Usage(String),
+    #[error("{}: {source}", path.display())]
+    Recipe { path: PathBuf, source: RecipeError },
+    #[error("{}: {source}", path.display())]
+    Replay { path: PathBuf, source: ReplayError },
+    #[error(transparent)]
+    ReadMesh(#[from] ReadError),
+    #[error(transparent)]
+    WriteMesh(#[from] WriteError),
+    #[error("{}: {problem}", path.display())]
+    File { path: PathBuf, problem: String },
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+}
+
+impl From<Cancelled> for CommandError {
+    fn from(_: Cancelled) -> Self {
+        Self::Interrupted
+    }
+}
+
+impl CommandError {
+    pub(crate) fn file(path: &Path, problem: impl ToString) -> Self {
+        Self::File { path: path.to_owned(), problem: problem.to_string() }
+    }
+
+    pub(crate) fn cannot(verb: &str, path: &Path, source: &io::Error) -> Self {
+        Self::file(path, format!("cannot {verb}: {source}"))
+    }
+
+    /// A usage error of clap's, without the lines on usage.
+    pub(crate) fn usage(error: &clap::Error) -> Self {
+        if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+            return Self::Usage("no command given; see `isochore --help`, or start with `isochore demo`".to_owned());
+        }
+        let text = error.to_string();
+        let paragraphs = text.split("\n\n").take_while(|paragraph| !paragraph.starts_with("Usage:"));
+        let words: Vec<&str> = paragraphs.flat_map(str::split_whitespace).collect();
+        let text = words.join(" ");
+        let text = text.strip_prefix("error: ").unwrap_or(&text);
+        Self::Usage(text.to_owned())
+    }
+
+    pub(crate) fn exit_code(&self) -> u8 {
+        if matches!(self, Self::Interrupted) { 130 } else { 2 }
+    }
+
+    /// The error for machines: the message and, where known, the file, the line and the recipe's key.
+    pub(crate) fn to_json(&self) -> serde_json::Value {
+        let mut json = serde_json::json!({ "error": self.to_string() });
+        let file = match self {
+            Self::Recipe { path, .. } | Self::Replay { path, .. } | Self::File { path, .. } => Some(path),
+            Self::ReadMesh(
+                ReadError::UnknownFormat { path } | ReadError::Io { path, .. } | ReadError::Parse { path, .. },
+            ) => Some(path),
+            Self::WriteMesh(
+                WriteError::UnknownFormat { path }
+                | WriteError::Io { path, .. }
+                | WriteError::Invalid { path, .. }
+                | WriteError::TooLarge { path, .. },
+            ) => Some(path),
+            Self::Usage(_) | Self::Interrupted => None,
+        };
+        if let Some(file) = file {
+            json["file"] = file.to_string_lossy().into();
+        }
+        let recipe = match self {
+            Self::Recipe { source, .. } => Some(source),
+            Self::Replay { source: ReplayError::Recipe(source), .. } => Some(source),
+            _ => None,
+        };
+        if let Some(RecipeError { location, key, .. }) = recipe {
+            if let Location::Line(line) = location {
+                json["line"] = (*line).into();
+            }
+            json["key"] = key.as_str().into();
+        }
+        json
+    }
+}

@@ -1,0 +1,55 @@
+//! `isochore demo`: a newcomer's first run.
+
+use std::time::Instant;
+
+use isochore_mesh::io::{self, Format};
+use isochore_sculpt::Meshes;
+
+use crate::{
+    Outcome, arguments::DemoArguments, command_error::CommandError, console::Console, job::Job, run::conclude,
+    staging::Staging,
+};
+
+/// What is done, with names of files in the demo's own folder.
+const RECIPE: &str = include_str!("demo/press.toml");
+const RECIPE_NAME: &str = "press.toml";
+
+/// The meshes that the recipe names.
+const MESHES: [(&str, &[u8]); 0] = [];
+
+pub(crate) fn demo(arguments: &DemoArguments, console: &Console) -> Result<Outcome, CommandError> {
+    let start = Instant::now();
+    let folder = &arguments.output;
+    let mut staging = Staging::new(console.interrupt());
+    staging.add_folder(folder)?;
+
+    let recipe_path = folder.join(RECIPE_NAME);
+    let mut meshes = Meshes::new();
+    for (name, bytes) in MESHES {
+        let path = folder.join(name);
+        let wrong = |error: &dyn std::fmt::Display| CommandError::file(&path, error);
+        let format = Format::of_path(&path).ok_or_else(|| wrong(&"unknown mesh format"))?;
+        meshes.insert(name.to_owned(), io::read_bytes(format, bytes).map_err(|error| wrong(&error))?);
+        let draft = staging.add_file(&path)?;
+        staging.write(&draft, bytes)?;
+    }
+    let draft = staging.add_file(&recipe_path)?;
+    staging.write(&draft, RECIPE.as_bytes())?;
+
+    let job = Job::parse(&recipe_path, RECIPE.as_bytes().to_vec(), &[])?;
+    let report = job.carry_out(&meshes, start.elapsed().as_secs_f64(), staging, console)?;
+    console.finish();
+    if !console.is_json() {
+        let first_line = RECIPE.lines().next().unwrap_or_default();
+        console.say(first_line.trim_start_matches("# "));
+    }
+    let outcome = conclude(&report, job.outputs.mesh.as_deref(), console);
+    if !console.is_json() {
+        let outputs = [&job.outputs.report];
+        for path in outputs.into_iter().flatten() {
+            console.say(path.display());
+        }
+        console.say(format_args!("Change {0} and do it again: isochore run {0}", recipe_path.display()));
+    }
+    Ok(outcome)
+}

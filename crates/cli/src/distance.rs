@@ -1,0 +1,81 @@
+//! `isochore distance`: the signed distance of a mesh as a NumPy array.
+
+use isochore_mesh::{DistanceField, DistanceFieldError, DistanceFieldOptions, Padding, io};
+use npyz::WriterBuilder;
+use serde::Serialize;
+
+use crate::{Outcome, arguments::DistanceArguments, command_error::CommandError, console::Console, staging::Staging};
+
+/// What goes beside the array.
+#[derive(Debug, Clone, Serialize)]
+struct Description {
+    /// Position of the sample with index [0, 0, 0], model units.
+    origin: [f64; 3],
+    /// Distance of neighboring samples, model units.
+    cell: f64,
+    /// Samples along x, y and z.
+    dims: [usize; 3],
+    /// No sample is farther from the exact distance than this, model units.
+    error_bound: f64,
+}
+
+pub(crate) fn distance(arguments: &DistanceArguments, console: &Console) -> Result<Outcome, CommandError> {
+    if arguments.output.extension().is_none_or(|extension| extension != "npy") {
+        return Err(CommandError::file(&arguments.output, "must end in .npy"));
+    }
+    let mut staging = Staging::new(console.interrupt());
+    let array = staging.add_file(&arguments.output)?;
+    let description = staging.add_file(&arguments.output.with_extension("json"))?;
+
+    let mesh = io::read(&arguments.mesh)?;
+    let options = DistanceFieldOptions {
+        resolution: arguments.resolution as usize,
+        padding: arguments.padding.map_or(Padding::Cells(2), Padding::Length),
+        ..DistanceFieldOptions::default()
+    };
+    let field = DistanceField::new(&mesh, &options, console).map_err(|error| match error {
+        DistanceFieldError::Cancelled(cancelled) => cancelled.into(),
+        error => CommandError::file(&arguments.mesh, error),
+    })?;
+    if !field.is_closed() {
+        console.insist(format_args!(
+            "warning: {}: the mesh is open; its inside is taken to be where its winding number is above one half",
+            arguments.mesh.display()
+        ));
+    }
+    let grid = field.grid();
+    staging.write(&array, &npy(field.samples(), grid.dims))?;
+    let facts = Description {
+        origin: grid.origin.to_array(),
+        cell: grid.cell,
+        dims: grid.dims,
+        error_bound: field.sample_error(),
+    };
+    staging.write(&description, format!("{}\n", crate::console::to_json(&facts)).as_bytes())?;
+    staging.commit()?;
+    console.finish();
+    if console.is_json() {
+        console.print_json(&facts);
+    } else {
+        let [x, y, z] = grid.dims;
+        let name = arguments.output.display();
+        console.say(format_args!(
+            "{name}: {x} × {y} × {z} samples, {:.3e} apart, to {:.1e}",
+            facts.cell, facts.error_bound
+        ));
+    }
+    Ok(Outcome::Done)
+}
+
+/// The samples, x fastest, as an array with index [z, y, x].
+fn npy(samples: &[f32], dims: [usize; 3]) -> Vec<u8> {
+    let [x, y, z] = dims.map(|count| count as u64);
+    let mut bytes = Vec::with_capacity(size_of_val(samples) + 128);
+    let mut write = || {
+        let mut writer = npyz::WriteOptions::new().default_dtype().shape(&[z, y, x]).writer(&mut bytes).begin_nd()?;
+        writer.extend(samples.iter().copied())?;
+        writer.finish()
+    };
+    write().expect("there are as many samples as the grid has nodes, and memory takes them all");
+    bytes
+}

@@ -1,0 +1,66 @@
+//! `isochore run`: deforms the target of a recipe.
+
+use std::{path::Path, time::Instant};
+
+use isochore_sculpt::Report;
+
+use crate::{
+    Outcome, arguments::RunArguments, command_error::CommandError, console::Console, job::Job, staging::Staging,
+};
+
+pub(crate) fn run(arguments: &RunArguments, console: &Console) -> Result<Outcome, CommandError> {
+    let start = Instant::now();
+    let mut job = Job::read(&arguments.recipe, &arguments.settings)?;
+    if let Some(output) = &arguments.output {
+        job.outputs.mesh = Some(output.clone());
+    }
+    if let Some(report) = &arguments.report {
+        job.outputs.report = Some(report.clone());
+    }
+    if job.outputs.mesh.is_none() && job.outputs.report.is_none() && !console.is_json() {
+        return Err(CommandError::file(&job.path, "asks for no output: set output.mesh or pass --output FILE"));
+    }
+    let meshes = job.read_meshes()?;
+    let read_seconds = start.elapsed().as_secs_f64();
+    let report = job.carry_out(&meshes, read_seconds, Staging::new(console.interrupt()), console)?;
+    Ok(conclude(&report, job.outputs.mesh.as_deref(), console))
+}
+
+/// Tells what came of it: the report as JSON, or the gist in words.
+pub(crate) fn conclude(report: &Report, mesh: Option<&Path>, console: &Console) -> Outcome {
+    console.finish();
+    for warning in &report.warnings {
+        console.insist(format_args!("warning: {warning}"));
+    }
+    if console.is_json() {
+        console.print_json(report);
+    } else {
+        let name = mesh.map_or("result".to_owned(), |path| path.display().to_string());
+        let after = &report.after;
+        console.say(format_args!(
+            "{name}: {} vertices, {} triangles, {} vertices inserted, {} moved by up to {:.3e}",
+            after.vertices, after.triangles, report.inserted_vertices, report.moved_vertices, report.max_displacement,
+        ));
+        if let (Some(volume), Some(change)) = (after.volume, report.volume_change) {
+            let before_lock = match (report.lock_max_shift, report.volume_change_before_lock) {
+                (Some(shift), Some(change)) => {
+                    format!(" ({change:+.1e} before the lock, which shifted by {shift:.1e})")
+                }
+                _ => String::new(),
+            };
+            console.say(format_args!("volume {volume:.9}, changed by {change:+.1e}{before_lock}"));
+        }
+    }
+    let mut outcome = Outcome::Done;
+    for name in report.missed_promises() {
+        outcome = Outcome::PromiseMissed;
+        let [before, after] = [&report.before, &report.after].map(|side| side.self_intersecting_triangles);
+        let found = match (name, report.volume_change) {
+            ("volume", Some(change)) => format!("the volume changed by {change:+.3e}"),
+            ("volume", None) => "the written mesh encloses no volume".to_owned(),
+            _ => format!("{after} triangles intersect, {before} before"),
+        };
+        console.insist(format_args!("promise missed: {name}: {found}"));
+    }
+    outcome
+}

@@ -1,0 +1,16 @@
+//! `isochore schema`: the shape of recipes and reports, for editors and other programs.
+
+use crate::{
+    Outcome,
+    arguments::{Document, SchemaArguments},
+    command_error::CommandError,
+    console::Console,
+};
+
+pub(crate) fn schema(arguments: &SchemaArguments, console: &Console) -> Result<Outcome, CommandError> {
+    console.print_json(&match arguments.document {
+        Document::Recipe => isochore_sculpt::schema::recipe(),
+        Document::Report => isochore_sculpt::schema::report(),
+    });
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,10 @@
+//! The command in temporary folders: exit codes, words, files.
+
+#[path = "command/bad_input.rs"]
+mod bad_input;
+#[path = "command/folder.rs"]
+mod folder;
+#[path = "command/interruption.rs"]
+mod interruption;
+#[path = "command/results.rs"]
+mod results;

@@ -1,0 +1,251 @@
+//! What comes out when the input is good.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::folder::{Folder, PRESS, TETRAHEDRON};
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[test]
+fn run_writes_everything_it_is_asked_for() {
+    let outputs = "frames = { count = 3, directory = \"frames\" }\nreport = \"report.json\"\n";
+    let folder = Folder::with(&[("press.toml", &format!("{PRESS}{outputs}"))]);
+    let run = folder.run(&["run", "press.toml"]).expect(0);
+    assert_eq!(run.stdout, "");
+    let names: Vec<String> = folder.contents().into_keys().collect();
+    let frames = ["frames/", "frames/frame_0000.ply", "frames/frame_0001.ply", "frames/frame_0002.ply"];
+    assert_eq!(names, [&frames[..], &["out.ply", "press.toml", "report.json"]].concat());
+    assert_eq!(folder.read("frames/frame_0002.ply"), folder.read("out.ply"), "the last frame is the result");
+    assert_ne!(folder.read("frames/frame_0001.ply"), folder.read("out.ply"));
+
+    let report = folder.json("report.json");
+    for side in ["before", "after"] {
+        for key in ["vertices", "triangles", "closed", "volume", "area", "bounds", "self_intersecting_triangles"] {
+            assert!(!report[side][key].is_null(), "{side}.{key}");
+        }
+    }
+    // The lock leaves rounding alone: some hundred units in the last place for a sum over thousands of triangles.
+    assert!(number(&report["volume_change"]).abs() <= 1e-12, "{}", report["volume_change"]);
+    assert!(number(&report["volume_change_before_lock"]).abs() > 1e-9);
+    assert!(number(&report["lock_max_shift"]) > 0.0);
+    assert!(number(&report["moved_vertices"]) > 0.0 && number(&report["max_displacement"]) > 0.1);
+    assert_eq!(number(&report["inserted_vertices"]), number(&report["after"]["vertices"]) - 642.0);
+    assert_eq!(report["promises"], serde_json::json!({}));
+    assert_eq!(report["strokes"][0]["kind"], "move");
+    for key in ["seconds", "evaluations", "moved", "inserted", "volume_change"] {
+        assert!(report["strokes"][0][key].is_number(), "{key}");
+    }
+    for key in ["read", "distance", "advect", "refine", "lock", "check", "write"] {
+        assert!(report["seconds"][key].is_number(), "{key}");
+    }
+    assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(report["recipe_sha256"].as_str().unwrap().len(), 64);
+}
+
+#[test]
+fn a_missed_promise_gives_exit_code_1_with_the_output_written() {
+    let recipe = format!("{PRESS}[promise]\nvolume = 1e-9\n[volume]\nlock = false\n[refine]\nenabled = false\n");
+    let folder = Folder::with(&[("press.toml", &recipe)]);
+    let run = folder.run(&["run", "press.toml", "--report", "report.json", "--quiet"]).expect(1);
+    assert_eq!(
+        run.stderr.lines().filter(|line| line.starts_with("promise missed: volume")).count(),
+        1,
+        "{}",
+        run.stderr
+    );
+    assert!(folder.path("out.ply").exists());
+    let report = folder.json("report.json");
+    assert_eq!(report["promises"]["volume"], false);
+    assert!(number(&report["volume_change"]).abs() > 1e-9);
+    assert!(report["lock_max_shift"].is_null());
+
+    folder.run(&["run", "press.toml", "--report", "report.json", "--set", "promise.volume=0.1"]).expect(0);
+    let report = folder.json("report.json");
+    assert_eq!(report["promises"]["volume"], true);
+    assert_eq!(report["overrides"][0], "promise.volume=0.1");
+}
+
+#[test]
+fn same_bytes_for_any_number_of_threads() {
+    let recipe = PRESS.replace("subdivisions = 3", "subdivisions = 4");
+    let folder = Folder::with(&[("press.toml", &recipe), ("king.obj", TETRAHEDRON)]);
+    let king =
+        "tools.ball.shape={ kind = \"mesh\", mesh = \"king.obj\", resolution = 24, transform = { scale = 0.8 } }";
+    for (shape, output) in [(king, "a.obj"), (king, "a.glb"), ("tools.ball.support=0.3", "a.stl")] {
+        let bytes = ["1", "2", "8", "8"].map(|threads| {
+            let arguments = ["run", "press.toml", "--threads", threads, "--output", output, "--set", shape];
+            folder.run(&arguments).expect(0);
+            folder.read(output)
+        });
+        assert!(bytes.iter().all(|other| *other == bytes[0]), "{output}");
+    }
+}
+
+#[test]
+fn open_tool_meshes_are_taken_with_a_warning() {
+    let open = TETRAHEDRON.replace("f 2 3 4\n", "");
+    let folder = Folder::with(&[("press.toml", PRESS), ("open.obj", &open)]);
+    let shape = "tools.ball.shape={ kind = \"mesh\", mesh = \"open.obj\", resolution = 24 }";
+    let run = folder.run(&["run", "press.toml", "--set", shape]).expect(0);
+    assert!(run.stderr.contains("warning: tools.ball.shape.mesh: the mesh is open"), "{}", run.stderr);
+    assert!(folder.path("out.ply").exists());
+}
+
+#[test]
+fn open_targets_have_no_volume() {
+    let open = TETRAHEDRON.replace("f 2 3 4\n", "");
+    let folder = Folder::with(&[("press.toml", PRESS), ("open.obj", &open)]);
+    let target = "target={ mesh = \"open.obj\" }";
+    let run = folder.run(&["run", "press.toml", "--set", target, "--report", "report.json"]).expect(0);
+    assert!(run.stderr.contains("the lock was skipped"), "{}", run.stderr);
+    let report = folder.json("report.json");
+    for value in [&report["before"]["volume"], &report["volume_change"], &report["lock_max_shift"]] {
+        assert!(value.is_null());
+    }
+    assert_eq!(report["after"]["closed"], false);
+}
+
+#[test]
+fn coarse_tool_grids_are_refined_and_said_so() {
+    let folder = Folder::with(&[("press.toml", PRESS), ("king.obj", TETRAHEDRON)]);
+    let shape = "tools.ball.shape={ kind = \"mesh\", mesh = \"king.obj\", resolution = 8 }";
+    let run = folder.run(&["run", "press.toml", "--set", shape]).expect(0);
+    // Six cells in a support of 0.3 on a side of 1.
+    assert!(run.stderr.contains("raised from 8 to 20"), "{}", run.stderr);
+}
+
+#[test]
+fn json_prints_the_report() {
+    let folder = Folder::with(&[("press.toml", PRESS)]);
+    let run = folder.run(&["run", "press.toml", "--report", "report.json", "--json"]).expect(0);
+    assert_eq!(serde_json::from_str::<Value>(&run.stdout).unwrap(), folder.json("report.json"));
+}
+
+#[test]
+fn json_recipes_do_the_same() {
+    let folder = Folder::with(&[("press.toml", PRESS)]);
+    folder.run(&["run", "press.toml"]).expect(0);
+    let toml = folder.read("out.ply");
+    let json = serde_json::json!({
+        "recipe": 1,
+        "target": { "shape": { "kind": "icosphere", "radius": 1.0, "subdivisions": 3 } },
+        "tools": { "ball": { "shape": { "kind": "sphere", "radius": 0.4 }, "support": 0.3, "profile": "quintic" } },
+        "stroke": [{
+            "kind": "move",
+            "tool": "ball",
+            "keys": [{ "at": [0, 0, 1.8] }, { "at": [0, 0, 1.1], "rotate": [0, 0, 1, 30.0] }],
+        }],
+        "output": { "mesh": "out.ply" },
+    });
+    fs::write(folder.path("press.json"), json.to_string()).unwrap();
+    folder.run(&["run", "press.json"]).expect(0);
+    assert_eq!(folder.read("out.ply"), toml);
+}
+
+#[test]
+fn what_is_out_of_reach_keeps_its_bits() {
+    let folder = Folder::with(&[
+        ("press.toml", PRESS),
+        ("far.obj", &TETRAHEDRON.replace("v 0", "v 50.1").replace("v 1", "v 51")),
+    ]);
+    let target = "target={ mesh = \"far.obj\" }";
+    folder.run(&["run", "press.toml", "--set", target, "--output", "still.obj", "--report", "report.json"]).expect(0);
+    assert_eq!(folder.json("report.json")["moved_vertices"], 0);
+    let positions = |name: &str| {
+        let text = String::from_utf8(folder.read(name)).unwrap();
+        let lines = text.lines().filter_map(|line| line.strip_prefix("v ").map(str::to_owned));
+        let numbers = |line: String| line.split(' ').map(|word| word.parse().unwrap()).collect::<Vec<f64>>();
+        lines.map(numbers).collect::<Vec<_>>()
+    };
+    assert_eq!(positions("still.obj"), positions("far.obj"));
+}
+
+#[test]
+fn inspect_lists_the_facts() {
+    let folder = Folder::with(&[("a.obj", TETRAHEDRON), ("open.obj", &TETRAHEDRON.replace("f 2 3 4\n", ""))]);
+    let facts: Value = serde_json::from_str(&folder.run(&["inspect", "a.obj", "--json"]).expect(0).stdout).unwrap();
+    let names = [
+        "vertices",
+        "triangles",
+        "components",
+        "closed",
+        "oriented",
+        "volume",
+        "area",
+        "bounds",
+        "boundary_edges",
+        "degenerate_triangles",
+        "self_intersecting_triangles",
+    ];
+    let mut found: Vec<&String> = facts.as_object().unwrap().keys().collect();
+    found.sort();
+    let mut expected = names;
+    expected.sort_unstable();
+    assert_eq!(found, expected);
+    assert_eq!(facts["vertices"], 4);
+    // Exact up to the rounding of a sum of four terms.
+    assert!((number(&facts["volume"]) - 1.0 / 6.0).abs() < 1e-15);
+    assert!((number(&facts["area"]) - (1.5 + 0.75_f64.sqrt())).abs() < 1e-14);
+    let open: Value = serde_json::from_str(&folder.run(&["inspect", "open.obj", "--json"]).expect(0).stdout).unwrap();
+    assert_eq!((&open["closed"], &open["boundary_edges"]), (&Value::from(false), &Value::from(3)));
+    assert!(open["volume"].is_null());
+    let text = folder.run(&["inspect", "open.obj"]).expect(0).stdout;
+    assert_eq!(text.lines().count(), names.len(), "{text}");
+}
+
+#[test]
+fn distance_writes_an_array_and_its_description() {
+    let folder = Folder::with(&[("a.obj", TETRAHEDRON)]);
+    folder.run(&["distance", "a.obj", "--resolution", "10", "--output", "a.npy"]).expect(0);
+    let description = folder.json("a.json");
+    assert_eq!(description["dims"], serde_json::json!([15, 15, 15]), "10 cells, 2 on each side, and a sample more");
+    assert_eq!(number(&description["cell"]), 0.1);
+    let bytes = folder.read("a.npy");
+    assert!(bytes.starts_with(b"\x93NUMPY"));
+    let header = String::from_utf8_lossy(&bytes[10..118]).into_owned();
+    assert!(header.contains("'<f4'") && header.contains("(15, 15, 15") && header.contains("False"), "{header}");
+    let samples: Vec<f32> =
+        bytes[bytes.len() - 4 * 15 * 15 * 15..].chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
+    let origin = number(&description["origin"][2]);
+    let bound = number(&description["error_bound"]);
+    // Below the face z = 0 the distance is the height; [z, y, x] = [0, 4, 4] is below the middle of that face.
+    let sample = f64::from(samples[4 * 15 + 4]);
+    assert!((sample + origin).abs() <= bound, "{sample} at height {origin}, to {bound}");
+    assert!(samples[(5 * 15 + 3) * 15 + 3] < 0.0, "inside");
+}
+
+#[test]
+fn schema_is_json() {
+    for document in ["recipe", "report"] {
+        let run = Folder::with(&[]).run(&["schema", document]).expect(0);
+        assert_eq!(serde_json::from_str::<Value>(&run.stdout).unwrap()["type"], "object");
+    }
+}
+
+#[test]
+fn help_and_version_go_to_stdout() {
+    for arguments in [&["--help"][..], &["run", "--help"], &["--version"]] {
+        let run = Folder::with(&[]).run(arguments).expect(0);
+        assert!(!run.stdout.is_empty() && run.stderr.is_empty());
+    }
+}
+
+#[test]
+fn demo_fills_a_folder_with_something_that_runs_again() {
+    let folder = Folder::with(&[]);
+    let run = folder.run(&["demo"]).expect(0);
+    assert!(run.stdout.is_empty() && run.stderr.lines().count() <= 8, "{run:?}");
+    let report = folder.json("isochore-demo/report.json");
+    assert_eq!(report["promises"], serde_json::json!({ "volume": true, "no_new_self_intersections": true }));
+    assert!(number(&report["max_displacement"]) > 0.1);
+    let before = folder.contents();
+    folder.run(&["run", "isochore-demo/press.toml"]).expect(0);
+    let mut after = folder.contents();
+    // Only the times in the report differ.
+    after.insert("isochore-demo/report.json".to_owned(), before["isochore-demo/report.json"].clone());
+    assert_eq!(after, before);
+}
