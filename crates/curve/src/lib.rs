@@ -61,6 +61,7 @@
 //! just split beyond the center of curvature; [`ClosestPoint::closest`] then still returns one of them. [`reach`] is an
 //! estimate from above.
 
+mod abreast;
 mod analytic;
 mod arc_length;
 mod bernstein;
@@ -86,6 +87,7 @@ mod tangents;
 mod tangents_only;
 mod twist;
 
+pub use abreast::{AbreastError, CURVES_ABREAST, ReferencesAbreast, SpinesAbreast};
 pub use analytic::{FunctionCurve, TrigonometricCurve, TrigonometricTerm};
 pub use arc_length::{ArcLength, length, total_curvature, total_squared_curvature, total_torsion};
 pub use bezier::Bezier;
