@@ -76,16 +76,18 @@ impl TriMesh {
         if edges.is_empty() {
             return None;
         }
+        let frame = Frame::of(self);
         let length = |edge: usize| {
             let [a, b] = edges[edge].map(|vertex| self.positions[vertex as usize]);
-            a.distance(b)
+            ((b - a) / frame.scale).length()
         };
         let (mut min, mut max) = (f64::INFINITY, 0.0_f64);
         for edge in 0..edges.len() {
             (min, max) = (min.min(length(edge)), max.max(length(edge)));
         }
         let [sum] = sum_terms(edges.len(), |edge| [length(edge)]);
-        Some(EdgeLengths { min, mean: sum / edges.len() as f64, max })
+        let mean = sum / edges.len() as f64;
+        Some(EdgeLengths { min: min * frame.scale, mean: mean * frame.scale, max: max * frame.scale })
     }
 
     /// Interior angles of `triangle` in the order of its vertices, radians; their sum is π unless two corners coincide.
@@ -172,7 +174,19 @@ impl Frame {
 
 /// Angle between two directions, 0 to π, accurate for small angles too; zero where one has no length.
 pub(crate) fn angle_between(u: DVec3, v: DVec3) -> f64 {
+    let (u, v) = (of_unit_size(u), of_unit_size(v));
     libm::atan2(u.cross(v).length(), u.dot(v))
+}
+
+/// Unit normal of a triangle; zero where it has no area.
+pub(crate) fn triangle_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    of_unit_size(b - a).cross(of_unit_size(c - a)).normalize_or_zero()
+}
+
+/// `vector` with a largest component of one, so that products of it neither overflow nor vanish; zero stays zero.
+fn of_unit_size(vector: DVec3) -> DVec3 {
+    let size = vector.abs().max_element();
+    if size > 0.0 && size.is_finite() { vector / size } else { DVec3::ZERO }
 }
 
 /// Representative of the set that holds `vertex`; halves the path on the way.

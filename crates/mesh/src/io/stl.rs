@@ -10,6 +10,7 @@ use glam::DVec3;
 use super::text::{at_line, numbered_lines, read_numbers};
 use super::{LineProblem, ParseError};
 use crate::TriMesh;
+use crate::measure::triangle_normal;
 
 /// Bytes before the triangles of a binary file: a free text and their number.
 const HEADER: usize = 84;
@@ -81,8 +82,7 @@ pub(super) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
     writer.write_all(&(mesh.triangles.len() as u32).to_le_bytes())?;
     for triangle in &mesh.triangles {
         let corners = triangle.map(|vertex| mesh.positions[vertex as usize].as_vec3());
-        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
-        let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+        let normal = triangle_normal(corners.map(|corner| corner.as_dvec3())).as_vec3();
         let mut record = [0; RECORD];
         for (bytes, vector) in record.chunks_exact_mut(12).zip([normal, corners[0], corners[1], corners[2]]) {
             for (bytes, coordinate) in bytes.chunks_exact_mut(4).zip(vector.to_array()) {

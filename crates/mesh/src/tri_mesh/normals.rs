@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::TriMesh;
-use crate::measure::angle_between;
+use crate::measure::{angle_between, triangle_normal};
 
 impl TriMesh {
     /// Unit normals by vertex: the sum of the adjacent triangles' normals, each weighted by its angle at the vertex.
@@ -57,7 +57,7 @@ impl TriMesh {
     /// The triangle's unit normal times its angle at each corner; zero for a triangle without area.
     fn weighted_corner_normals(&self, triangle: usize) -> [DVec3; 3] {
         let [a, b, c] = self.corners(triangle);
-        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let normal = triangle_normal([a, b, c]);
         [(b - a, c - a), (c - b, a - b), (a - c, b - c)].map(|(u, v)| normal * angle_between(u, v))
     }
 }

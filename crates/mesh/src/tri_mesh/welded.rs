@@ -1,7 +1,9 @@
 //! Merging vertices that files split at seams.
 
+use std::hash::Hasher;
+
 use glam::DVec3;
-use rustc_hash::FxHashMap;
+use rustc_hash::FxHasher;
 
 use crate::{Topology, TriMesh};
 
@@ -39,13 +41,13 @@ impl TriMesh {
     }
 
     fn welded_where(mut self, is_candidate: impl Fn(usize) -> bool) -> TriMesh {
-        let mut first_at = FxHashMap::with_capacity_and_hasher(self.positions.len(), Default::default());
+        let mut table = PositionTable::of(&self.positions);
         let mut kept: Vec<u32> = Vec::with_capacity(self.positions.len());
         let merged: Vec<u32> = (0..self.positions.len())
             .map(|vertex| {
                 let new = kept.len() as u32;
                 let target = match is_candidate(vertex) {
-                    true => *first_at.entry(position_key(self.positions[vertex])).or_insert(new),
+                    true => table.find_or_insert(vertex, new),
                     false => new,
                 };
                 if target == new {
@@ -104,7 +106,45 @@ impl TriMesh {
     }
 }
 
-/// Bits of the coordinates, the same for both zeros.
-fn position_key(position: DVec3) -> [u64; 3] {
-    (position + DVec3::ZERO).to_array().map(f64::to_bits)
+/// Vertices by position: a hash table with linear probing of nothing but vertex numbers.
+struct PositionTable<'a> {
+    positions: &'a [DVec3],
+    /// New number of a kept vertex and the vertex itself; [`VACANT`](Self::VACANT) where there is none.
+    slots: Vec<(u32, u32)>,
+    shift: u32,
 }
+
+impl<'a> PositionTable<'a> {
+    const VACANT: (u32, u32) = (u32::MAX, u32::MAX);
+
+    fn of(positions: &'a [DVec3]) -> Self {
+        let size = (2 * positions.len()).next_power_of_two().max(2);
+        Self { positions, slots: vec![Self::VACANT; size], shift: 64 - size.trailing_zeros() }
+    }
+
+    /// The number of the vertex that was first seen at the position of `vertex`: `new` if that is this one.
+    fn find_or_insert(&mut self, vertex: usize, new: u32) -> u32 {
+        let key = self.key(vertex);
+        let mut hasher = FxHasher::default();
+        key.iter().for_each(|&bits| hasher.write_u64(bits));
+        let mut slot = (hasher.finish().wrapping_mul(GOLDEN) >> self.shift) as usize;
+        loop {
+            match self.slots[slot] {
+                Self::VACANT => {
+                    self.slots[slot] = (new, vertex as u32);
+                    return new;
+                }
+                (number, known) if self.key(known as usize) == key => return number,
+                _ => slot = (slot + 1) & (self.slots.len() - 1),
+            }
+        }
+    }
+
+    /// Bits of the coordinates, the same for both zeros.
+    fn key(&self, vertex: usize) -> [u64; 3] {
+        (self.positions[vertex] + DVec3::ZERO).to_array().map(f64::to_bits)
+    }
+}
+
+/// 2⁶⁴ over the golden ratio: multiplying by it spreads neighbors (Knuth, "The Art of Computer Programming", 6.4).
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;

@@ -10,6 +10,7 @@ use serde_json::Value;
 use super::document::{Document, malformed};
 use super::scene::Instance;
 use crate::io::{ParseError, Resolve};
+use crate::measure::triangle_normal;
 use crate::{CornerAttributes, TriMesh, VertexAttributes};
 
 /// Reads the scene of a document as one mesh; equal positions become one vertex.
@@ -221,9 +222,8 @@ impl Soup {
                 .triangles
                 .iter()
                 .map(|triangle| {
-                    let [a, b, c] = triangle.map(|vertex| self.positions[vertex as usize]);
                     // Without normals a mesh is shaded flat, says the format.
-                    let flat = (b - a).cross(c - a).normalize_or_zero();
+                    let flat = triangle_normal(triangle.map(|vertex| self.positions[vertex as usize]));
                     triangle.map(|vertex| self.normals[vertex as usize].unwrap_or(flat))
                 })
                 .collect(),

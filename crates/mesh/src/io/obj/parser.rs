@@ -7,6 +7,7 @@ use crate::TriMesh;
 use crate::io::polygon::triangulate;
 use crate::io::text::{Words, at_line, parse_integer, read_numbers, text};
 use crate::io::{LineProblem, ParseError};
+use crate::measure::triangle_normal;
 
 /// Reads OBJ: `v` with optional color, `vt`, `vn`, `f`, `usemtl` and `mtllib`; other statements are passed over.
 ///
@@ -201,8 +202,7 @@ impl Obj {
                     uvs.push(corners.map(uv));
                 }
                 if has_normals {
-                    let [a, b, c] = triangle.map(|corner| polygon[corner]);
-                    let flat = || (b - a).cross(c - a).normalize_or_zero();
+                    let flat = || triangle_normal(triangle.map(|corner| polygon[corner]));
                     mesh.corner.normals.push(corners.map(|corner| match corner.normal {
                         0 => flat(),
                         normal => self.normals[normal as usize - 1],

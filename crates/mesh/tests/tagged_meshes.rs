@@ -1,0 +1,442 @@
+//! A table of meshes, each with what is known of it, and every operation on all of them.
+
+use glam::{DQuat, DVec2, DVec3, DVec4};
+use isochore_mesh::io::{self, Format};
+use isochore_mesh::{ClosedMesh, MeshError, SubTriangle, Subdivision, Topology, TriMesh, primitives};
+
+struct Tagged {
+    name: &'static str,
+    mesh: TriMesh,
+    is_closed: bool,
+    is_oriented: bool,
+    is_manifold: bool,
+    is_valid: bool,
+    degenerate: &'static [u32],
+    duplicate: &'static [u32],
+    components: usize,
+    /// Why it is no [`ClosedMesh`].
+    defect: Option<MeshError>,
+}
+
+impl Tagged {
+    /// A mesh without any defect but those that are set afterwards.
+    fn sound(name: &'static str, mesh: TriMesh) -> Self {
+        Self {
+            name,
+            mesh,
+            is_closed: true,
+            is_oriented: true,
+            is_manifold: true,
+            is_valid: true,
+            degenerate: &[],
+            duplicate: &[],
+            components: 1,
+            defect: None,
+        }
+    }
+}
+
+fn tetrahedron() -> TriMesh {
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    TriMesh::new(positions, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+}
+
+/// Two copies of `mesh`, the second moved by `offset`.
+fn twice(mesh: &TriMesh, offset: DVec3) -> TriMesh {
+    let count = mesh.positions.len() as u32;
+    let moved = mesh.positions.iter().map(|&position| position + offset);
+    let renumbered = mesh.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + count));
+    TriMesh::new(
+        mesh.positions.iter().copied().chain(moved).collect(),
+        mesh.triangles.iter().copied().chain(renumbered).collect(),
+    )
+}
+
+fn seamed() -> TriMesh {
+    let mut mesh = primitives::box_mesh(DVec3::ONE, [2, 2, 2]);
+    let corners = mesh.triangles.len();
+    mesh.corner.uvs = vec![(0..corners).map(|t| [0.0, 0.25, 0.5].map(|u| DVec2::new(u, t as f64))).collect()];
+    mesh.corner.normals = (0..corners)
+        .map(|t| {
+            let [a, b, c] = mesh.corners(t);
+            [(b - a).cross(c - a).normalize(); 3]
+        })
+        .collect();
+    mesh.corner.colors = vec![[DVec4::ONE, DVec4::ZERO, DVec4::X]; corners];
+    mesh.vertex.skin = (0..mesh.positions.len() as u32).map(|v| vec![(v % 3, 0.5), (v % 2 + 3, 0.5)]).collect();
+    mesh.materials = vec!["a".into(), "b".into()];
+    mesh.triangle_materials = (0..corners as u32).map(|t| t % 2).collect();
+    mesh
+}
+
+fn table() -> Vec<Tagged> {
+    let open = {
+        let mut mesh = tetrahedron();
+        mesh.triangles.pop();
+        Tagged {
+            is_closed: false,
+            defect: Some(MeshError::Open { edge: [1, 2], triangle: 0 }),
+            ..Tagged::sound("open", mesh)
+        }
+    };
+    let misoriented = {
+        let mut mesh = tetrahedron();
+        mesh.triangles[3] = [1, 3, 2];
+        Tagged {
+            is_oriented: false,
+            defect: Some(MeshError::Misoriented { edge: [1, 2], triangles: [0, 3] }),
+            ..Tagged::sound("misoriented", mesh)
+        }
+    };
+    let fin = {
+        let mut mesh = tetrahedron();
+        mesh.positions.push(DVec3::ONE);
+        mesh.triangles.push([1, 2, 4]);
+        Tagged {
+            is_closed: false,
+            is_manifold: false,
+            defect: Some(MeshError::NonManifoldEdge { edge: [1, 2], triangles: 3 }),
+            ..Tagged::sound("three triangles at an edge", mesh)
+        }
+    };
+    let pinched = {
+        let two = twice(&tetrahedron(), DVec3::ZERO);
+        let mut mesh = TriMesh::new(two.positions, two.triangles);
+        mesh.positions[5..].iter_mut().for_each(|position| *position = -*position);
+        mesh.triangles[4..].iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        mesh.triangles.iter_mut().flatten().filter(|vertex| **vertex == 4).for_each(|vertex| *vertex = 0);
+        Tagged { is_manifold: false, ..Tagged::sound("two fans at a vertex", mesh) }
+    };
+    let degenerate = {
+        let mut mesh = tetrahedron();
+        // A corner on the edge from 0 to 1, and the triangle of no area between them.
+        mesh.positions.push(DVec3::X * 0.25);
+        mesh.triangles[0] = [0, 2, 4];
+        mesh.triangles.push([4, 2, 1]);
+        mesh.triangles.push([0, 4, 1]);
+        Tagged { degenerate: &[5], ..Tagged::sound("zero area", mesh) }
+    };
+    let collapsed = {
+        let mut mesh = tetrahedron();
+        mesh.triangles.push([2, 2, 3]);
+        Tagged {
+            is_closed: false,
+            is_manifold: false,
+            degenerate: &[4],
+            defect: Some(MeshError::RepeatedVertex { triangle: 4, vertex: 2 }),
+            ..Tagged::sound("a vertex named twice", mesh)
+        }
+    };
+    let duplicate = {
+        let mut mesh = tetrahedron();
+        mesh.triangles.push([2, 1, 0]);
+        Tagged {
+            is_manifold: false,
+            duplicate: &[4],
+            defect: Some(MeshError::NonManifoldEdge { edge: [0, 1], triangles: 3 }),
+            ..Tagged::sound("duplicate triangle", mesh)
+        }
+    };
+    let out_of_range = {
+        let mut mesh = tetrahedron();
+        mesh.triangles[2][1] = 4;
+        Tagged {
+            is_closed: false,
+            is_oriented: false,
+            is_manifold: false,
+            is_valid: false,
+            defect: Some(MeshError::IndexOutOfRange { triangle: 2, index: 4, vertices: 4 }),
+            ..Tagged::sound("index out of range", mesh)
+        }
+    };
+    let infinite = {
+        let mut mesh = tetrahedron();
+        mesh.positions[3].x = f64::INFINITY;
+        let position = mesh.positions[3];
+        Tagged {
+            is_valid: false,
+            defect: Some(MeshError::NonFinite { vertex: 3, position }),
+            ..Tagged::sound("infinite coordinate", mesh)
+        }
+    };
+    let empty = Tagged {
+        is_closed: false,
+        components: 0,
+        defect: Some(MeshError::Empty),
+        ..Tagged::sound("empty", TriMesh::default())
+    };
+    let scaled = |name, scale| {
+        Tagged::sound(name, primitives::icosphere(1.0, 2).transformed(scale, DQuat::IDENTITY, DVec3::ZERO))
+    };
+    let two = twice(&tetrahedron(), DVec3::X * 3.0);
+    vec![
+        Tagged::sound("closed", tetrahedron()),
+        Tagged::sound("seamed", seamed()),
+        Tagged { components: 2, ..Tagged::sound("two components", two) },
+        scaled("huge", 1e300),
+        scaled("tiny", 1e-300),
+        open,
+        misoriented,
+        fin,
+        pinched,
+        degenerate,
+        collapsed,
+        duplicate,
+        out_of_range,
+        infinite,
+        empty,
+    ]
+}
+
+/// Meshes that can be computed with.
+fn valid() -> impl Iterator<Item = Tagged> {
+    table().into_iter().filter(|tagged| tagged.is_valid)
+}
+
+#[test]
+fn check_finds_what_is_known() {
+    for tagged in table() {
+        let check = tagged.mesh.check();
+        let found = (check.is_closed(), check.is_oriented(), check.is_manifold(), check.is_valid());
+        let expected = (tagged.is_closed, tagged.is_oriented, tagged.is_manifold, tagged.is_valid);
+        assert_eq!(found, expected, "{}: closed, oriented, manifold, valid", tagged.name);
+        // Products of the tiniest coordinates vanish, so that no orientation can be told.
+        if tagged.name != "tiny" {
+            assert_eq!(check.degenerate_triangles, tagged.degenerate, "{}", tagged.name);
+        }
+        assert_eq!(check.duplicate_triangles, tagged.duplicate, "{}", tagged.name);
+    }
+}
+
+#[test]
+fn closed_mesh_names_the_defect() {
+    for tagged in table() {
+        assert_eq!(ClosedMesh::new(&tagged.mesh).err(), tagged.defect, "{}", tagged.name);
+        if let Some(defect) = tagged.defect {
+            assert_eq!(defect.to_string().lines().count(), 1);
+        }
+    }
+}
+
+#[test]
+fn measures_are_numbers() {
+    for Tagged { name, mesh, components, .. } in valid() {
+        for measure in [mesh.volume(), mesh.area(), mesh.volume_centroid().length()] {
+            assert!(!measure.is_nan(), "{name}");
+        }
+        assert!(mesh.edge_lengths().is_none_or(|lengths| lengths.min <= lengths.mean && lengths.mean <= lengths.max));
+        assert!(mesh.angle_range().is_none_or(|[min, max]| 0.0 <= min && max <= std::f64::consts::PI));
+        assert_eq!(mesh.components().count, components, "{name}");
+        assert!(mesh.vertex_normals().iter().all(|normal| normal.is_finite()), "{name}");
+    }
+}
+
+#[test]
+fn size_does_not_spoil_measures() {
+    let unit = primitives::icosphere(1.0, 2);
+    for exponent in [900, -900] {
+        let scale = 2.0_f64.powi(exponent);
+        let mesh = unit.transformed(scale, DQuat::IDENTITY, DVec3::ZERO);
+        // Scaling by a power of two is exact, so everything scales with it bit by bit.
+        let lengths = mesh.edge_lengths().unwrap();
+        assert_eq!(lengths.mean / scale, unit.edge_lengths().unwrap().mean);
+        assert_eq!(mesh.angle_range(), unit.angle_range());
+        assert_eq!(mesh.vertex_normals(), unit.vertex_normals());
+        assert_eq!(mesh.volume_centroid() / scale, unit.volume_centroid());
+    }
+}
+
+#[test]
+fn turning_over_negates_the_volume() {
+    for Tagged { name, mesh, .. } in valid() {
+        let volume = mesh.volume();
+        assert_eq!(mesh.flipped().volume(), -volume, "{name}");
+    }
+}
+
+#[test]
+fn similarity_scales_the_volume() {
+    for Tagged { name, mesh, defect, .. } in valid() {
+        // The volume of any other depends on where it is measured from.
+        if matches!(name, "huge" | "tiny") || defect.is_some() {
+            continue;
+        }
+        let rotation = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 2.0) / 3.0, 1.0);
+        let volume = mesh.volume();
+        for scale in [2.0, -2.0] {
+            let moved = mesh.transformed(scale, rotation, DVec3::splat(1e3)).volume();
+            // Positions near 1e3 are rounded by 1e-13, which is that share of the volume times area over volume.
+            assert!((moved - 8.0 * volume).abs() < 1e-11, "{name}: {moved}");
+        }
+    }
+}
+
+/// Each triangle in four, by the midpoints of its edges.
+fn in_four(mesh: &TriMesh) -> Subdivision {
+    let topology = Topology::of(mesh);
+    let count = mesh.positions.len() as u32;
+    let midpoint = |ends: &[u32; 2]| {
+        let [a, b] = ends.map(|vertex| mesh.positions[vertex as usize]);
+        0.5 * a + 0.5 * b
+    };
+    let positions = mesh.positions.iter().copied().chain(topology.edges.iter().map(midpoint)).collect();
+    let mut triangles = Vec::new();
+    for (parent, &[a, b, c]) in mesh.triangles.iter().enumerate() {
+        let [ab, bc, ca] = topology.triangle_edges(parent).map(|edge| edge + count);
+        let corner = [DVec3::X, DVec3::Y, DVec3::Z];
+        let [mid_ab, mid_bc, mid_ca] = [(0, 1), (1, 2), (2, 0)].map(|(i, k)| 0.5 * corner[i] + 0.5 * corner[k]);
+        let parent = parent as u32;
+        triangles.extend(
+            [
+                ([a, ab, ca], [corner[0], mid_ab, mid_ca]),
+                ([b, bc, ab], [corner[1], mid_bc, mid_ab]),
+                ([c, ca, bc], [corner[2], mid_ca, mid_bc]),
+                ([ab, bc, ca], [mid_ab, mid_bc, mid_ca]),
+            ]
+            .map(|(vertices, corners)| SubTriangle { vertices, parent, corners }),
+        );
+    }
+    Subdivision { positions, triangles }
+}
+
+#[test]
+fn subdivision_keeps_shape_and_topology() {
+    for Tagged { name, mesh, .. } in valid() {
+        let finer = mesh.subdivided(&in_four(&mesh));
+        let (before, after) = (mesh.check(), finer.check());
+        assert_eq!(after.triangles, 4 * before.triangles);
+        if name == "a vertex named twice" {
+            // An edge from a vertex to itself has no halves to speak of.
+            continue;
+        }
+        assert_eq!(after.is_closed(), before.is_closed(), "{name}");
+        assert_eq!(after.is_oriented(), before.is_oriented(), "{name}");
+        if before.duplicate_triangles.is_empty() {
+            // Duplicates come to share edges that were inside of each.
+            assert_eq!(finer.euler_characteristic(), mesh.euler_characteristic(), "{name}");
+        }
+        if before.is_closed() {
+            let (before, after) = (mesh.volume(), finer.volume());
+            // Either sum is good to a few roundings of its terms, which do not cancel; overflow is the same in both.
+            assert!(before == after || (after - before).abs() <= 1e-14 * before.abs(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn subdivision_interpolates_attributes_once() {
+    let mesh = seamed();
+    let finer = mesh.subdivided(&in_four(&mesh));
+    for (child, triangle) in finer.triangles.chunks_exact(4).enumerate() {
+        let first = 4 * child;
+        assert_eq!(finer.corner.uvs[0][first][0], mesh.corner.uvs[0][child][0]);
+        let [a, b, _] = mesh.corner.uvs[0][child];
+        assert_eq!(finer.corner.uvs[0][first][1], 0.5 * (a + b));
+        assert_eq!(finer.corner.colors[first][1], 0.5 * (DVec4::ONE + DVec4::ZERO));
+        assert!(finer.corner.normals[first..first + 4].iter().flatten().all(|n| *n == mesh.corner.normals[child][0]));
+        assert!(finer.triangle_materials[first..first + 4].iter().all(|m| *m == mesh.triangle_materials[child]));
+        assert_eq!(triangle[0][0], mesh.triangles[child][0]);
+    }
+    assert_eq!(finer.vertex.skin[..mesh.positions.len()], mesh.vertex.skin);
+    for influences in &finer.vertex.skin {
+        assert!(influences.len() <= 2);
+        let total: f64 = influences.iter().map(|(_, weight)| weight).sum();
+        // Two or three roundings of numbers below one.
+        assert!((total - 1.0).abs() < 4.0 * f64::EPSILON);
+    }
+}
+
+/// Corners at the new vertex of an edge get equal attributes from both sides where the ends are equal on both sides.
+#[test]
+fn subdivision_opens_no_seam() {
+    let mut mesh = primitives::icosphere(1.0, 1);
+    let normals = mesh.vertex_normals();
+    mesh.corner.normals = mesh.triangles.iter().map(|t| t.map(|v| normals[v as usize])).collect();
+    mesh.corner.uvs = vec![mesh.triangles.iter().map(|t| t.map(|v| normals[v as usize].truncate())).collect()];
+    let finer = mesh.subdivided(&in_four(&mesh));
+    let mut at_vertex = vec![None; finer.positions.len()];
+    for (triangle, vertices) in finer.triangles.iter().enumerate() {
+        for (corner, &vertex) in vertices.iter().enumerate() {
+            let value = (finer.corner.normals[triangle][corner], finer.corner.uvs[0][triangle][corner]);
+            assert_eq!(*at_vertex[vertex as usize].get_or_insert(value), value);
+        }
+    }
+}
+
+#[test]
+fn welding_joins_what_was_split() {
+    for Tagged { name, mesh, .. } in valid() {
+        let corners = mesh.triangles.iter().flatten().map(|&vertex| mesh.positions[vertex as usize]).collect();
+        let triangles = (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let soup = TriMesh::new(corners, triangles);
+        let has_collapsed = name == "a vertex named twice";
+        for welded in [soup.clone().welded(), soup.welded_at_boundary()] {
+            assert_eq!(welded.triangles.len() + usize::from(has_collapsed), mesh.triangles.len(), "{name}");
+            assert_eq!(welded.volume(), mesh.volume(), "{name}");
+            if !has_collapsed {
+                assert_eq!(welded.check().is_closed(), mesh.check().is_closed(), "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn differing_colors_move_to_the_corners_on_welding() {
+    let mut mesh = TriMesh::new(
+        vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X, DVec3::ZERO, -DVec3::Y],
+        vec![[0, 1, 2], [3, 4, 5]],
+    );
+    mesh.vertex.colors = (0..6).map(|vertex| DVec4::splat(f64::from(vertex))).collect();
+    let welded = mesh.welded();
+    assert_eq!(welded.positions.len(), 4);
+    assert!(welded.vertex.colors.is_empty());
+    assert_eq!(welded.corner.colors, [[0.0, 1.0, 2.0].map(DVec4::splat), [3.0, 4.0, 5.0].map(DVec4::splat)]);
+}
+
+#[test]
+fn new_normals_keep_hard_edges_and_smooth_ones() {
+    // A box stays a box: every corner gets the normal of its face, exactly.
+    let mut mesh = seamed();
+    let expected = mesh.corner.normals.clone();
+    mesh.update_normals();
+    assert_eq!(mesh.corner.normals, expected);
+
+    // A smooth sphere that is stretched to an ellipsoid gets the normals of its vertices.
+    let mut sphere = primitives::icosphere(1.0, 3);
+    let radial = sphere.vertex_normals();
+    sphere.corner.normals = sphere.triangles.iter().map(|t| t.map(|v| radial[v as usize])).collect();
+    sphere.positions.iter_mut().for_each(|position| position.z *= 2.0);
+    sphere.update_normals();
+    let expected = sphere.vertex_normals();
+    for (triangle, vertices) in sphere.triangles.iter().enumerate() {
+        for (corner, &vertex) in vertices.iter().enumerate() {
+            // The same six or five vectors, added in another order.
+            assert!(sphere.corner.normals[triangle][corner].distance(expected[vertex as usize]) < 1e-14);
+        }
+    }
+    for (vertex, position) in sphere.positions.iter().enumerate() {
+        let exact = DVec3::new(position.x, position.y, position.z / 4.0).normalize();
+        // Facets of 0.15 units turn by up to half of that; the weighted mean leaves a fraction of it.
+        assert!(expected[vertex].distance(exact) < 0.05);
+    }
+}
+
+#[test]
+fn every_format_takes_every_valid_mesh_or_says_why_not() {
+    for Tagged { name, mesh, .. } in table() {
+        for format in [Format::Obj, Format::Gltf, Format::Glb, Format::Ply, Format::Stl, Format::Off] {
+            let mut bytes = Vec::new();
+            match io::write_to(format, &mesh, &mut bytes) {
+                Ok(()) => match io::read_bytes(format, &bytes) {
+                    Ok(read) => assert!(read.check().is_valid(), "{name} {format:?}"),
+                    // Nothing to read, or all triangles collapsed in single precision.
+                    Err(error) => assert!(matches!(name, "empty" | "tiny"), "{name} {format:?}: {error}"),
+                },
+                Err(error) => {
+                    let is_expected = !mesh.check().is_valid() || name == "huge";
+                    assert!(is_expected, "{name} {format:?}: {error}");
+                }
+            }
+        }
+    }
+}
