@@ -53,15 +53,19 @@ impl Console {
         self.bar.finish_and_clear();
     }
 
-    /// A line on stderr, unless quiet.
+    /// A line on stderr, unless quiet or for machines.
     pub(crate) fn say(&self, line: impl std::fmt::Display) {
-        if !self.is_quiet {
-            self.insist(line);
+        if !self.is_quiet && !self.is_json {
+            self.bar.suspend(|| print_line(&mut io::stderr(), line));
         }
     }
 
-    /// A line on stderr, quiet or not.
-    pub(crate) fn insist(&self, line: impl std::fmt::Display) {
+    /// A line on stderr, quiet or not, which begins with what sort of line it is: `warning: …`.
+    pub(crate) fn warn(&self, sort: &str, text: impl std::fmt::Display) {
+        let line = match self.is_json {
+            true => serde_json::json!({ sort: text.to_string() }).to_string(),
+            false => format!("{sort}: {text}"),
+        };
         self.bar.suspend(|| print_line(&mut io::stderr(), line));
     }
 

@@ -38,10 +38,9 @@ pub(crate) fn distance(arguments: &DistanceArguments, console: &Console) -> Resu
         error => CommandError::file(&arguments.mesh, error),
     })?;
     if !field.is_closed() {
-        console.insist(format_args!(
-            "warning: {}: the mesh is open; its inside is taken to be where its winding number is above one half",
-            arguments.mesh.display()
-        ));
+        let mesh = arguments.mesh.display();
+        let text = "the mesh is open; its inside is taken to be where its winding number is above one half";
+        console.warn("warning", format_args!("{mesh}: {text}"));
     }
     let grid = field.grid();
     staging.write(&array, &npy(field.samples(), grid.dims))?;

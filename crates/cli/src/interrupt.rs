@@ -23,7 +23,21 @@ pub(crate) struct Interrupt {
 #[derive(Debug, Default)]
 struct Shared {
     is_raised: AtomicBool,
-    unfinished: Mutex<Vec<PathBuf>>,
+    unfinished: Mutex<Unfinished>,
+}
+
+/// What a process that ends at once would leave behind.
+#[derive(Debug, Default)]
+pub(crate) struct Unfinished {
+    folders: Vec<PathBuf>,
+    is_committed: bool,
+}
+
+impl Unfinished {
+    /// Declares the outputs to be in place: an interrupt comes too late.
+    pub(crate) fn commit(&mut self) {
+        self.is_committed = true;
+    }
 }
 
 impl Interrupt {
@@ -39,7 +53,10 @@ impl Interrupt {
             thread::sleep(PATIENCE);
             // Waits for outputs that are just being put in place: those are all there or none.
             let unfinished = heard.unfinished();
-            unfinished.iter().for_each(|path| drop(std::fs::remove_dir_all(path)));
+            if unfinished.is_committed {
+                return;
+            }
+            unfinished.folders.iter().for_each(|folder| drop(std::fs::remove_dir_all(folder)));
             let error = crate::command_error::CommandError::Interrupted;
             crate::console::print_error(&error, std::env::args_os().any(|argument| argument == "--json"));
             std::process::exit(error.exit_code().into());
@@ -53,11 +70,11 @@ impl Interrupt {
 
     /// Remembers a folder to remove should the process have to end at once.
     pub(crate) fn add_unfinished(&self, folder: &Path) {
-        self.unfinished().push(folder.to_owned());
+        self.unfinished().folders.push(folder.to_owned());
     }
 
     /// Keeps the process from ending over the head of its work for as long as the guard lives.
-    pub(crate) fn unfinished(&self) -> MutexGuard<'_, Vec<PathBuf>> {
+    pub(crate) fn unfinished(&self) -> MutexGuard<'_, Unfinished> {
         // The list stays whole whatever thread panicked with it.
         self.shared.unfinished.lock().unwrap_or_else(PoisonError::into_inner)
     }

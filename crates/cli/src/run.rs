@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &RunArguments, console: &Console) -> Result<Outcome
 pub(crate) fn conclude(report: &Report, mesh: Option<&Path>, console: &Console) -> Outcome {
     console.finish();
     for warning in &report.warnings {
-        console.insist(format_args!("warning: {warning}"));
+        console.warn("warning", warning);
     }
     if console.is_json() {
         console.print_json(report);
@@ -60,7 +60,7 @@ pub(crate) fn conclude(report: &Report, mesh: Option<&Path>, console: &Console) 
             ("volume", None) => "the written mesh encloses no volume".to_owned(),
             _ => format!("{after} triangles intersect, {before} before"),
         };
-        console.insist(format_args!("promise missed: {name}: {found}"));
+        console.warn("promise missed", format_args!("{name}: {found}"));
     }
     outcome
 }

@@ -96,7 +96,7 @@ impl Staging {
     /// # Errors
     /// [`CommandError::Interrupted`], or what the system says; everything is then as it was.
     pub(crate) fn commit(self) -> Result<(), CommandError> {
-        let _guard = self.interrupt.unfinished();
+        let mut unfinished = self.interrupt.unfinished();
         if self.interrupt.is_raised() {
             return Err(CommandError::Interrupted);
         }
@@ -119,6 +119,7 @@ impl Staging {
             undo.steps.push(step);
         }
         undo.steps.clear();
+        unfinished.commit();
         Ok(())
     }
 
