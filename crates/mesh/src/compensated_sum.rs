@@ -55,3 +55,32 @@ pub fn sum_terms<const N: usize>(count: usize, term: impl Fn(usize) -> [f64; N] 
     }
     total.map(CompensatedSum::value)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_terms_beside_large_ones_survive() {
+        let mut sum = CompensatedSum::default();
+        [1.0, 1e100, 1.0, -1e100].into_iter().for_each(|value| sum.add(value));
+        assert_eq!(sum.value(), 2.0);
+        [f64::MAX, f64::MAX].into_iter().for_each(|value| sum.add(value));
+        assert_eq!(sum.value(), f64::INFINITY);
+    }
+
+    #[test]
+    fn sums_have_the_same_bits_for_any_number_of_threads() {
+        let term = |index: usize| [libm::sin(index as f64), 1.0 / (1.0 + index as f64)];
+        let with_threads = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| sum_terms(100_000, term)).map(f64::to_bits)
+        };
+        assert_eq!(with_threads(1), with_threads(2));
+        assert_eq!(with_threads(1), with_threads(8));
+        // The harmonic number to its full precision: Euler's constant + ln n + 1/2n − 1/12n².
+        let [_, harmonic] = with_threads(2).map(f64::from_bits);
+        let exact = 0.577_215_664_901_532_9 + libm::log(1e5) + 0.5e-5 - 1.0 / 12e10;
+        assert!((harmonic - exact).abs() < 2.0 * f64::EPSILON * exact);
+    }
+}

@@ -2,6 +2,18 @@
 //!
 //! [`read`] and [`write`] choose the format by the file's extension; [`read_bytes`] and [`write_to`] need no files.
 //! What a format can hold decides what survives: see [`Format`].
+//!
+//! ```
+//! use isochore_mesh::io::{self, Format};
+//! use isochore_mesh::{ClosedMesh, primitives};
+//!
+//! let ball = primitives::icosphere(1.0, 3);
+//! let mut bytes = Vec::new();
+//! io::write_to(Format::Obj, &ball, &mut bytes)?;
+//! let read = io::read_bytes(Format::Obj, &bytes)?;
+//! assert_eq!(ClosedMesh::new(&read)?.volume(), ball.volume());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod format;
 mod gltf;
@@ -112,12 +124,14 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let file = tempfile::Builder::new().prefix(".isochore-").tempfile_in(folder).map_err(failed)?;
+    let file = temporary_file(folder).map_err(failed)?;
     let mut buffered = std::io::BufWriter::with_capacity(1 << 20, file);
     write_format(format, mesh, &mut buffered).map_err(failed)?;
     let file = buffered.into_inner().map_err(|error| failed(error.into_error()))?;
     file.as_file().sync_all().map_err(failed)?;
-    keep_permissions(file.as_file(), path).map_err(failed)?;
+    if let Ok(replaced) = std::fs::metadata(path) {
+        file.as_file().set_permissions(replaced.permissions()).map_err(failed)?;
+    }
     file.persist(path).map_err(|error| failed(error.error))?;
     Ok(())
 }
@@ -154,18 +168,15 @@ fn check_writable(format: Format, mesh: &TriMesh, path: &Path) -> Result<(), Wri
     Ok(())
 }
 
-/// A temporary file is for its owner alone; the mesh gets the rights of the file it replaces, or the usual ones.
-#[cfg(unix)]
-fn keep_permissions(file: &std::fs::File, path: &Path) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    let permissions = match std::fs::metadata(path) {
-        Ok(replaced) => replaced.permissions(),
-        Err(_) => std::fs::Permissions::from_mode(0o644),
-    };
-    file.set_permissions(permissions)
-}
-
-#[cfg(not(unix))]
-fn keep_permissions(_file: &std::fs::File, _path: &Path) -> std::io::Result<()> {
-    Ok(())
+/// A temporary file in `folder` with the rights that any new file gets.
+fn temporary_file(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".isochore-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // The library's own choice is a file for its owner alone; from this one the system takes what its mask forbids.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
 }

@@ -204,3 +204,62 @@ fn unite(parents: &mut [u32], a: u32, b: u32) {
     // The smaller index leads, whatever the order of the calls.
     parents[a.max(b) as usize] = a.min(b);
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
+
+    use super::*;
+    use crate::primitives;
+
+    #[test]
+    fn box_measures_are_exact() {
+        let mut mesh = primitives::box_mesh(DVec3::new(1.0, 2.0, 3.0), [1, 2, 3]);
+        // A power of two, so that moving rounds nothing.
+        let offset = DVec3::splat(1_048_576.0);
+        mesh.positions.iter_mut().for_each(|position| *position += offset);
+        assert_eq!(mesh.volume(), 48.0);
+        assert_eq!(mesh.area(), 88.0);
+        assert_eq!(mesh.volume_centroid(), offset);
+        assert_eq!(
+            mesh.bounds(),
+            Aabb { min: offset - DVec3::new(1.0, 2.0, 3.0), max: offset + DVec3::new(1.0, 2.0, 3.0) }
+        );
+        assert_eq!(mesh.components().count, 1);
+        let lengths = mesh.edge_lengths().unwrap();
+        assert_eq!((lengths.min, lengths.max), (2.0, 2.0 * SQRT_2));
+        assert_eq!(mesh.angle_range(), Some([FRAC_PI_4, FRAC_PI_2]));
+    }
+
+    #[test]
+    fn centroid_is_that_of_the_volume() {
+        // A tetrahedron's is the mean of its corners, whatever its vertices count elsewhere.
+        let corners = vec![DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0, DVec3::Z * 4.0];
+        let mut mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
+        assert_eq!(mesh.volume_centroid(), DVec3::ONE);
+        // A flat mesh has none, but still a middle.
+        mesh.triangles.truncate(1);
+        mesh.positions.truncate(3);
+        assert_eq!(mesh.volume_centroid(), DVec3::new(2.0, 2.0, 0.0));
+    }
+
+    #[test]
+    fn volume_is_accurate_far_from_the_origin() {
+        // Coordinates on a grid of 2⁻²⁰, which a shift by 1024 keeps exactly.
+        let mut mesh = primitives::icosphere(1.0, 5);
+        let grid = f64::from(1 << 20);
+        mesh.positions.iter_mut().for_each(|position| *position = (*position * grid).round() / grid);
+        let volume = mesh.volume();
+        mesh.positions.iter_mut().for_each(|position| *position += 1024.0);
+        // The bounds' center moves by an exact amount, so not a bit changes.
+        assert_eq!(mesh.volume(), volume);
+    }
+
+    #[test]
+    fn components_are_numbered_by_first_occurrence() {
+        let positions = vec![DVec3::ZERO; 9];
+        let mesh = TriMesh::new(positions, vec![[6, 7, 8], [0, 1, 2], [3, 4, 5], [2, 5, 1]]);
+        let components = mesh.components();
+        assert_eq!((components.count, components.of_triangle), (2, vec![0, 1, 1, 1]));
+    }
+}

@@ -92,3 +92,19 @@ impl Topology {
         std::array::from_fn(|side| self.edge_of_half_edge[3 * triangle + side])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_of_two_triangles() {
+        let topology = Topology::of_triangles(&[[0, 1, 2], [2, 1, 3]], 5);
+        assert_eq!(topology.edges, [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]);
+        let half_edges: Vec<&[u32]> = (0..5).map(|edge| topology.half_edges(edge)).collect();
+        assert_eq!(half_edges, [&[0][..], &[2], &[1, 3], &[4], &[5]]);
+        assert_eq!(topology.triangle_edges(0), [0, 2, 1]);
+        assert_eq!(topology.triangle_edges(1), [2, 3, 4]);
+        assert_eq!(Topology::of_triangles(&[], 0).edges.len(), 0);
+    }
+}

@@ -58,7 +58,11 @@ fn clip_ears(corners: &[DVec2], mut emit: impl FnMut([usize; 3])) {
         let [a, b, c] = [corners[a], corners[b], corners[c]].map(|p| Coord { x: p.x, y: p.y });
         orient2d(a, b, c)
     };
-    let mut ring: Vec<usize> = (0..corners.len()).collect();
+    let count = corners.len();
+    let mut ring: Vec<usize> = (0..count).collect();
+    // A corner inside an ear is never a convex one, and convex corners stay convex.
+    let not_convex = |&corner: &usize| turn((corner + count - 1) % count, corner, (corner + 1) % count) <= 0.0;
+    let mut obstacles: Vec<usize> = (0..count).filter(not_convex).collect();
     let mut at = 0;
     let mut tried = 0;
     while ring.len() > 3 {
@@ -70,10 +74,11 @@ fn clip_ears(corners: &[DVec2], mut emit: impl FnMut([usize; 3])) {
                 && turn(ear, after, other) >= 0.0
                 && turn(after, before, other) >= 0.0
         };
-        let is_ear = turn(before, ear, after) > 0.0 && !ring.iter().any(is_inside);
+        let is_ear = turn(before, ear, after) > 0.0 && !obstacles.iter().any(is_inside);
         if is_ear || tried == count {
             emit([before, ear, after]);
             ring.remove(at % count);
+            obstacles.retain(|&corner| corner != ear);
             // The corner after the next makes rounder triangles than another ear at the same place.
             at = (at + 1) % ring.len();
             tried = 0;

@@ -1,6 +1,6 @@
 //! Why a mesh file may fail to be written.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::MeshError;
 
@@ -14,7 +14,7 @@ pub enum WriteError {
         path: PathBuf,
     },
     /// The folder is missing, the disk full, or the like.
-    #[error("{}: cannot write: {source}", path.display())]
+    #[error("{}: cannot write: {source}", shown(path))]
     Io {
         /// The file; empty where there is none.
         path: PathBuf,
@@ -22,7 +22,7 @@ pub enum WriteError {
         source: std::io::Error,
     },
     /// The mesh is not one that could be read back.
-    #[error("{}: not written: {source}", path.display())]
+    #[error("{}: not written: {source}", shown(path))]
     Invalid {
         /// The file; empty where there is none.
         path: PathBuf,
@@ -30,11 +30,16 @@ pub enum WriteError {
         source: MeshError,
     },
     /// A position is beyond single precision, in a format that has no other.
-    #[error("{}: not written: the position of vertex {vertex} is too large for single precision", path.display())]
+    #[error("{}: not written: the position of vertex {vertex} is too large for single precision", shown(path))]
     TooLarge {
         /// The file; empty where there is none.
         path: PathBuf,
         /// The vertex, counted from zero.
         vertex: usize,
     },
+}
+
+/// The path, or what stands for it where the mesh goes to a writer.
+fn shown(path: &Path) -> std::path::Display<'_> {
+    if path.as_os_str().is_empty() { Path::new("mesh").display() } else { path.display() }
 }

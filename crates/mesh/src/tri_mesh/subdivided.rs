@@ -74,7 +74,7 @@ impl TriMesh {
             }
         }
         for origin in origins {
-            // A vertex that no triangle uses gets what its nearest original would have to invent: nothing.
+            // A new vertex that no triangle uses has nothing to take attributes from.
             let parent = origin.map(|(parent, weights)| (self.triangles[parent as usize].map(|v| v as usize), weights));
             if !colors.is_empty() {
                 let color = parent.map(|(corners, weights)| interpolate(&corners.map(|v| colors[v]), weights));

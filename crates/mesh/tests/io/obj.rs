@@ -69,6 +69,33 @@ fn polygons_are_split_without_turning_a_triangle_over() {
     }
 }
 
+/// Two combs against each other: many corners that are not convex, and ears that others lie in.
+#[test]
+fn long_polygons_keep_their_area() {
+    let teeth = 500;
+    let mut text = String::new();
+    let mut area = 0.0;
+    for tooth in 0..teeth {
+        let x = 2 * tooth;
+        text.push_str(&format!("v {x} {} 0\nv {} -1 0\n", 10 - tooth % 7, x + 1));
+    }
+    text.push_str(&format!("v {} -5 0\nv 0 -5 0\nf", 2 * teeth));
+    (0..2 * teeth + 2).for_each(|corner| text.push_str(&format!(" {}", corner + 1)));
+    let mesh = parse_obj(&text);
+    assert_eq!(mesh.triangles.len(), 2 * teeth);
+    for triangle in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.corners(triangle);
+        let turn = (b - a).cross(c - a).z;
+        assert!(turn < 0.0, "triangle {triangle} is turned over");
+        area -= 0.5 * turn;
+    }
+    let corners = &mesh.positions;
+    let next = |corner: usize| corners[(corner + 1) % corners.len()];
+    let shoelace: f64 = (0..corners.len()).map(|corner| -0.5 * corners[corner].cross(next(corner)).z).sum();
+    // Integers and halves below 2⁵³: both sums are exact.
+    assert_eq!(area, shoelace);
+}
+
 #[test]
 fn quadrilaterals_get_the_rounder_triangles() {
     // A flat rhombus: its short diagonal is the better one, whichever corner comes first.

@@ -1,8 +1,10 @@
 use std::sync::Arc;
 
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 use isochore_mesh::io::Format;
 use isochore_mesh::{Assets, TriMesh, primitives};
+use proptest::array::uniform3;
+use proptest::prelude::*;
 
 use crate::{FORMATS, reread, seamed_box};
 
@@ -120,4 +122,59 @@ fn carried_documents_survive_a_second_round() {
     let again = reread(Format::Glb, &mesh);
     assert_eq!(again, mesh);
     assert!(!Arc::ptr_eq(again.assets.gltf.as_ref().unwrap(), mesh.assets.gltf.as_ref().unwrap()));
+}
+
+/// Any finite number, and often a simple one.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![any::<f64>().prop_filter("finite", |value| value.is_finite()), (-4..4).prop_map(f64::from), -1.0..1.0,]
+}
+
+/// Triangles any way round over vertices anywhere, each position used by one vertex only.
+fn any_mesh() -> impl Strategy<Value = TriMesh> {
+    let positions = prop::collection::vec([number(), number(), number()].prop_map(DVec3::from_array), 3..20);
+    let distinct = positions.prop_map(|positions| {
+        let mut kept: Vec<DVec3> = Vec::new();
+        positions.into_iter().for_each(|position| {
+            if !kept.contains(&position) {
+                kept.push(position)
+            }
+        });
+        kept
+    });
+    let distinct = distinct.prop_filter("three vertices", |positions| positions.len() >= 3);
+    (distinct, prop::collection::vec((uniform3(any::<prop::sample::Index>()), uniform3([number(), number()])), 1..30))
+        .prop_map(|(positions, corners)| {
+            let count = positions.len();
+            let triangles = corners.iter().map(|(vertices, _)| {
+                let first = vertices[0].index(count);
+                let second = (first + 1 + vertices[1].index(count - 1)) % count;
+                let third = (0..count).filter(|&v| v != first && v != second).nth(vertices[2].index(count - 2));
+                [first as u32, second as u32, third.unwrap() as u32]
+            });
+            let mut mesh = TriMesh::new(positions, triangles.collect());
+            mesh.corner.uvs = vec![corners.iter().map(|(_, uvs)| uvs.map(DVec2::from_array)).collect()];
+            mesh
+        })
+}
+
+proptest! {
+    #[test]
+    fn any_mesh_comes_back_from_formats_of_doubles(mesh in any_mesh()) {
+        for format in [Format::Obj, Format::Ply, Format::Off] {
+            assert_comes_back(format, &mesh);
+        }
+    }
+
+    #[test]
+    fn any_mesh_of_single_precision_comes_back_from_gltf(mut mesh in any_mesh()) {
+        // Numbers that single precision holds, where they still tell the vertices apart.
+        let round = |value: f64| f64::from(value.clamp(-1e30, 1e30) as f32);
+        mesh.positions.iter_mut().for_each(|position| *position = position.map(round));
+        mesh.corner.uvs[0].iter_mut().flatten().for_each(|uv| *uv = uv.map(round));
+        let positions = &mesh.positions;
+        prop_assume!((1..positions.len()).all(|vertex| !positions[..vertex].contains(&positions[vertex])));
+        for format in [Format::Glb, Format::Gltf] {
+            assert_comes_back(format, &mesh);
+        }
+    }
 }
