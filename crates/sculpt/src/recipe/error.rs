@@ -148,15 +148,16 @@ fn suggestion(nearest: &Option<String>, known: &[String]) -> String {
 
 impl fmt::Display for RecipeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.location {
-            Location::Unknown => {}
-            Location::Line(line) => write!(f, "line {line}: ")?,
-            Location::Override(text) => write!(f, "--set {text}: ")?,
-        }
-        if !self.key.is_empty() {
-            write!(f, "{}: ", self.key)?;
-        }
-        write!(f, "{}", self.problem)
+        let place = match &self.location {
+            Location::Unknown => String::new(),
+            Location::Line(line) => format!("line {line}: "),
+            Location::Override(text) => format!("--set {text}: "),
+        };
+        let separator = if self.key.is_empty() { "" } else { ": " };
+        let text = format!("{place}{}{separator}{}", self.key, self.problem);
+        // Names come from the recipe and may hold anything, but an error is one line.
+        text.chars()
+            .try_for_each(|c| if c.is_control() { write!(f, "{}", c.escape_default()) } else { write!(f, "{c}") })
     }
 }
 
