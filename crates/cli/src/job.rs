@@ -83,6 +83,9 @@ impl Job {
         };
         // All places are taken first: whoever lacks a folder should not learn it after the work.
         let drafts = Drafts::new(&self.outputs, &mut staging)?;
+        if self.recipe.output.preview.is_some() {
+            console.warn("warning", "output.preview: this version draws no pictures");
+        }
         let replay = replay(&self.recipe, meshes, console).map_err(failed)?;
 
         let start = Instant::now();
