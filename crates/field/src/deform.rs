@@ -8,7 +8,7 @@ use isochore_mesh::{Cancelled, ClosedMesh, Monitor, TriMesh};
 use crate::{
     Note, Receipt, RefineOptions, Stroke, StrokeReceipt,
     lock::lock_volume,
-    refine::{Criteria, Refinement, refine, resolve_field},
+    refine::{Criteria, Refinement, refine, resolve_field, untangle},
     tessellation::Tessellation,
     volume::signed_volume,
 };
@@ -86,6 +86,9 @@ pub fn deform(
     for index in 0..strokes.len() {
         facet_error = apply(&mut tessellation, &strokes[..=index], criteria.as_ref(), &mut receipt, monitor)?;
     }
+    if let Some(criteria) = &criteria {
+        facet_error = separate(&mut tessellation, strokes, criteria, &mut receipt, monitor)?.unwrap_or(facet_error);
+    }
     if let Some(vertex) = tessellation.image.iter().position(|image| !image.is_finite()) {
         return Err(DeformError::Overflow { vertex });
     }
@@ -158,6 +161,22 @@ fn apply(
             .map(|volume| signed_volume(&mesh.image, &mesh.indices()) / volume - 1.0 - volume_so_far),
     });
     Ok(refined.facet_error)
+}
+
+/// Splits what crosses itself in the end. Returns the facet error, if any was split.
+fn separate(
+    mesh: &mut Tessellation,
+    strokes: &[Stroke],
+    criteria: &Criteria,
+    receipt: &mut Receipt,
+    monitor: &dyn Monitor,
+) -> Result<Option<f64>, Cancelled> {
+    let begin = Instant::now();
+    let untangled = untangle(mesh, strokes, criteria, monitor)?;
+    let facet_error =
+        if untangled.inserted > 0 { Some(refine(mesh, strokes, None, monitor)?.facet_error) } else { None };
+    receipt.seconds.refine += begin.elapsed().as_secs_f64();
+    Ok(facet_error)
 }
 
 fn lock(mesh: &mut Tessellation, triangles: &[[u32; 3]], receipt: &mut Receipt) {

@@ -20,6 +20,7 @@ pub enum Profile {
     /// 1 − 4u³ + 3u⁴: one minus von Funck's blend.
     Quartic,
     /// (1−u)³(1+u), continued into the tool as far as u = −½: what is touched comes close to the surface exponentially fast.
+    /// A tool thinner than the support has no room for that: what lies inside from the start is torn along its medial axis.
     Contact,
     /// (1−|u|)²: kinked on the surface, as in the thesis.
     Thesis,

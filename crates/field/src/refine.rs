@@ -38,6 +38,8 @@ pub(crate) struct Criteria {
     volume: f64,
     deviation: f64,
     max_edge: f64,
+    /// Length at rest of edges that are not split any more.
+    shortest: f64,
     max_triangles: usize,
 }
 
@@ -58,6 +60,11 @@ pub(crate) struct Refinement {
 /// what a defect would keep going.
 const MAX_ROUNDS: usize = 40;
 
+/// An edge at rest of this share of the deviation allowed, whose image still deviates, is torn by a jump of the velocity, as on
+/// the medial axis of a thin tool with a profile that acts inside. Larger stops before strong but smooth stretching is followed;
+/// smaller splits more along the tear, to no end.
+const TORN: f64 = 1.0 / 64.0;
+
 /// A round aims at this share of the volume error allowed, so that what it leaves, being re-estimated on finer triangles, does
 /// not call for one more round that splits a handful. Larger takes more rounds; smaller splits more than asked.
 const AIM: f64 = 0.5;
@@ -70,6 +77,14 @@ const LEAST_LEFT: f64 = 1.0 / 3.0;
 /// Larger splits one edge a triangle and makes slivers; smaller splits flat directions of cylinders.
 const SIGNIFICANT: f64 = 0.5;
 
+/// Rounds of splitting triangles that cross. Each halves the edges there, and what crosses falls to a quarter of the area or
+/// less; more rounds pay with many triangles for sheets that profiles without a rigid core squeeze ever thinner.
+const MAX_UNTANGLING_ROUNDS: usize = 6;
+
+/// Splitting goes on while it leaves at most this share of the area that crosses. Nearer to one it chases the error of the
+/// time step; smaller gives up on sheets that take several rounds.
+const WORTHWHILE: f64 = 0.9;
+
 impl Criteria {
     /// No split goes beyond this number of triangles.
     pub(crate) fn max_triangles(&self) -> usize {
@@ -78,11 +93,13 @@ impl Criteria {
 
     /// The criteria for a mesh with the `image` it now has; `volume` is that of the closed mesh at rest, none of an open one.
     pub(crate) fn new(options: &RefineOptions, mesh: &Tessellation, volume: Option<f64>) -> Self {
+        let deviation = options.deviation * Aabb::of(mesh.rest.iter().copied()).size().max_element();
         let longest =
             || (0..mesh.triangles.len()).flat_map(|index| edge_lengths(&mesh.image_of(index))).fold(0.0, f64::max);
         Self {
             volume: volume.map_or(f64::INFINITY, |volume| options.volume * volume.abs()),
-            deviation: options.deviation * Aabb::of(mesh.rest.iter().copied()).size().max_element(),
+            deviation,
+            shortest: TORN * deviation,
             max_edge: options.max_edge.unwrap_or_else(|| 1.5 * longest()),
             max_triangles: options.max_triangles,
         }
@@ -168,6 +185,42 @@ pub(crate) fn refine(
     Ok(refinement)
 }
 
+/// Splits triangles whose images cross although their rests do not, as long as that helps.
+///
+/// The exact image of a surface that does not cross itself does not either, so what crosses are flat triangles that cut
+/// through a neighboring sheet, or the error of the time step, which splitting does not mend.
+pub(crate) fn untangle(
+    mesh: &mut Tessellation,
+    strokes: &[Stroke],
+    criteria: &Criteria,
+    monitor: &dyn Monitor,
+) -> Result<Refinement, Cancelled> {
+    let mut refinement = Refinement::default();
+    let mut last_area = f64::INFINITY;
+    for round in 0..MAX_UNTANGLING_ROUNDS {
+        monitor.check("untangle", round as f64 / MAX_UNTANGLING_ROUNDS as f64)?;
+        let crossing = mesh.new_crossings(monitor)?;
+        let area = mesh.image_area(&crossing);
+        if crossing.is_empty() || area > WORTHWHILE * last_area {
+            break;
+        }
+        last_area = area;
+        refinement.evaluations +=
+            mesh.track(strokes, |_, index| crossing.binary_search(&(index as u32)).is_ok(), monitor)?;
+        let mut is_split = vec![false; mesh.midpoint_count()];
+        for midpoint in crossing.iter().filter_map(|&index| mesh.midpoints_of(index as usize)).flatten() {
+            is_split[midpoint as usize] = true;
+        }
+        refinement.evaluations += add_longest_edges(mesh, strokes, &mut is_split, monitor)?;
+        if mesh.triangles_after(&is_split) > criteria.max_triangles {
+            refinement.is_limited = true;
+            break;
+        }
+        refinement.inserted += mesh.split(&is_split);
+    }
+    Ok(refinement)
+}
+
 /// Wherever a triangle is split, has its longest edge split too, and so on through the neighbors.
 ///
 /// Without this a triangle can lose its two shorter edges again and again, its longest always just within the criteria, and
@@ -213,9 +266,10 @@ fn edges_to_split(mesh: &Tessellation, criteria: &Criteria, gains: &[f64], facet
     for index in 0..mesh.triangles.len() {
         let (Some(curved), Some(midpoints)) = (mesh.curved(index), mesh.midpoints_of(index)) else { continue };
         let (deviations, lengths) = (curved.deviations(), curved.lengths());
+        let rest_lengths = edge_lengths(&mesh.rest_of(index));
         for edge in 0..3 {
-            is_split[midpoints[edge] as usize] |=
-                deviations[edge].length() > criteria.deviation || lengths[edge] > criteria.max_edge;
+            let is_wanted = deviations[edge].length() > criteria.deviation || lengths[edge] > criteria.max_edge;
+            is_split[midpoints[edge] as usize] |= is_wanted && rest_lengths[edge] > criteria.shortest;
         }
     }
     for index in triangles_to_split(gains, facet_error, criteria.volume) {

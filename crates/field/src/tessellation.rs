@@ -4,8 +4,8 @@
 //! point, never the middle of the images: that is what brings the surface closer to the true image.
 
 use glam::DVec3;
-use isochore_mesh::{Cancelled, Monitor, SubTriangle, Subdivision, TriMesh};
-use rustc_hash::FxHashMap;
+use isochore_mesh::{Cancelled, Monitor, SelfIntersectionError, SelfIntersections, SubTriangle, Subdivision, TriMesh};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{Stroke, flow};
 
@@ -120,10 +120,44 @@ impl Tessellation {
         self.triangles[triangle].vertices.map(|vertex| self.image[vertex as usize])
     }
 
+    /// Corners of a triangle at rest.
+    pub(crate) fn rest_of(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].vertices.map(|vertex| self.rest[vertex as usize])
+    }
+
     /// The triangle's image with its midpoints, if all are followed.
     pub(crate) fn curved(&self, triangle: usize) -> Option<CurvedTriangle> {
         let midpoints = self.midpoints_of(triangle)?.map(|midpoint| self.midpoints.image[midpoint as usize]);
         Some(CurvedTriangle { corners: self.image_of(triangle), midpoints })
+    }
+
+    /// Triangles whose images cross others, where the triangles of the mesh as read that hold them do not; in ascending order.
+    pub(crate) fn new_crossings(&self, monitor: &dyn Monitor) -> Result<Vec<u32>, Cancelled> {
+        let found = crossing_pairs(&self.image, self.indices(), monitor)?;
+        if found.is_empty() {
+            return Ok(Vec::new());
+        }
+        let at_rest: FxHashSet<[u32; 2]> =
+            crossing_pairs(&self.rest, self.indices(), monitor)?.into_iter().map(|pair| self.parents(pair)).collect();
+        let mut crossing: Vec<u32> =
+            found.into_iter().filter(|&pair| !at_rest.contains(&self.parents(pair))).flatten().collect();
+        crossing.sort_unstable();
+        crossing.dedup();
+        Ok(crossing)
+    }
+
+    /// Sum of the areas of the images of some triangles.
+    pub(crate) fn image_area(&self, triangles: &[u32]) -> f64 {
+        let area = |&triangle: &u32| {
+            let [a, b, c] = self.image_of(triangle as usize);
+            0.5 * (b - a).cross(c - a).length()
+        };
+        triangles.iter().map(area).sum()
+    }
+
+    fn parents(&self, pair: [u32; 2]) -> [u32; 2] {
+        let [a, b] = pair.map(|triangle| self.triangles[triangle as usize].parent);
+        [a.min(b), a.max(b)]
     }
 
     /// Whether an edge of the triangle is chosen.
@@ -180,6 +214,19 @@ impl Midpoints {
             self.rest.push(0.5 * (rest[a as usize] + rest[b as usize]));
             self.rest.len() as u32 - 1
         })
+    }
+}
+
+fn crossing_pairs(
+    positions: &[DVec3],
+    triangles: Vec<[u32; 3]>,
+    monitor: &dyn Monitor,
+) -> Result<Vec<[u32; 2]>, Cancelled> {
+    match SelfIntersections::of(&TriMesh::new(positions.to_vec(), triangles), monitor) {
+        Ok(found) => Ok(found.pairs().to_vec()),
+        Err(SelfIntersectionError::Cancelled(cancelled)) => Err(cancelled),
+        // A mesh that cannot be searched is reported where it is checked; there is nothing to split here.
+        Err(_) => Ok(Vec::new()),
     }
 }
 

@@ -1,10 +1,17 @@
 use std::{f64::consts::FRAC_PI_2, sync::Arc};
 
-use isochore_mesh::{Capsule, Silent, Sphere, primitives};
+use isochore_mesh::{Capsule, SelfIntersections, Silent, Sphere, primitives};
 
 use super::*;
 use crate::{Move, Pose, Profile, Tool, Twist, rotation_from_vector};
 
+/// Refined, but not locked.
+const REFINED: DeformOptions = DeformOptions {
+    refine: Some(RefineOptions { volume: 1e-4, deviation: 1e-3, max_edge: None, max_triangles: 2_000_000 }),
+    lock: false,
+};
+
+/// The bare method on the triangles as they are.
 const BARE: DeformOptions = DeformOptions { refine: None, lock: false };
 
 fn ball(radius: f64, support: f64) -> Arc<Tool> {
@@ -77,19 +84,34 @@ fn refinement_keeps_the_surface_closed_and_the_rest_volume() {
     assert_eq!(deformed.rest.positions[..sphere.positions.len()], sphere.positions);
 }
 
-/// A rod that turns inside the surface squeezes some triangles until their longest edge is the one best within the criteria.
+/// A rod that turns by 90° just below the surface and draws a thin lip out of it.
+fn turning_rod(profile: Profile, step: f64) -> Stroke {
+    let rod = Arc::new(Tool::new(Arc::new(Capsule::new(0.15, 0.8).unwrap()), 0.25, profile).unwrap());
+    let at = DVec3::new(0.0, 0.6, 0.0);
+    let turned = Pose { rotation: rotation_from_vector(DVec3::Y * FRAC_PI_2), translation: at };
+    Stroke::Move(Move::new(rod, vec![Pose::at(at), turned], step).unwrap())
+}
+
+/// Some triangles are squeezed until their longest edge is the one best within the criteria.
 #[test]
 fn refinement_ends_and_leaves_no_slivers() {
-    let rod = Arc::new(Tool::new(Arc::new(Capsule::new(0.1, 0.8).unwrap()), 0.25, Profile::Quintic).unwrap());
-    let at = DVec3::new(0.0, 0.5, 0.0);
-    let turned = Pose { rotation: rotation_from_vector(DVec3::Y * FRAC_PI_2), translation: at };
-    let stroke = Stroke::Move(Move::new(rod, vec![Pose::at(at), turned], 0.125).unwrap());
     let sphere = primitives::icosphere(1.0, 4);
-    let deformed = run(&sphere, &[stroke], &DeformOptions { refine: Some(RefineOptions::default()), lock: false });
+    let deformed = run(&sphere, &[turning_rod(Profile::Quintic, 0.125)], &REFINED);
     let shortest = |mesh: &TriMesh| mesh.edge_lengths().unwrap().min;
     // The rod's tip draws material out more than a hundredfold, so seven halvings are due; an endless split goes on to 2⁻⁴⁰.
     assert!(shortest(&deformed.rest) > shortest(&sphere) / 1024.0);
     assert!(volume_change(&deformed).abs() < 1e-3);
+}
+
+#[test]
+fn refinement_takes_the_crossings_out_of_a_smooth_stroke() {
+    let sphere = primitives::icosphere(1.0, 4);
+    let crossing_area = |options: &DeformOptions| {
+        let mesh = run(&sphere, &[turning_rod(Profile::Quintic, 0.05)], options).mesh;
+        SelfIntersections::of(&mesh, &Silent).unwrap().area(&mesh)
+    };
+    assert!(crossing_area(&BARE) > 0.0);
+    assert_eq!(crossing_area(&REFINED), 0.0);
 }
 
 #[test]
@@ -121,7 +143,7 @@ fn a_tool_smaller_than_the_triangles_is_not_missed() {
     let tip = DVec3::new(0.3, -0.1, 1.4);
     let press =
         Stroke::Move(Move::new(ball(0.1, 0.1), vec![Pose::at(tip), Pose::at(tip - DVec3::Z * 0.5)], 0.125).unwrap());
-    let deformed = run(&cube, &[press], &DeformOptions { refine: Some(RefineOptions::default()), lock: false });
+    let deformed = run(&cube, &[press], &REFINED);
     assert!(deformed.receipt.max_displacement > 0.1, "{}", deformed.receipt.max_displacement);
     assert!(ClosedMesh::new(&deformed.mesh).is_ok());
     assert!(volume_change(&deformed).abs() < 1e-3);
@@ -161,7 +183,7 @@ fn threads_do_not_change_the_bits() {
 fn points_alone_flow_as_the_vertices_do() {
     let sphere = primitives::icosphere(1.0, 3);
     let strokes = [press(0.125)];
-    let deformed = run(&sphere, &strokes, &DeformOptions { lock: false, ..DeformOptions::default() });
+    let deformed = run(&sphere, &strokes, &REFINED);
     let points = crate::flow_points(&sphere.positions, &strokes, &Silent).unwrap();
     assert_eq!(points, deformed.mesh.positions[..points.len()]);
 }
