@@ -124,10 +124,13 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
+    // Asked first, because the error of a missing folder would speak of the temporary file in it.
+    std::fs::metadata(folder).map_err(failed)?;
     let file = temporary_file(folder).map_err(failed)?;
-    let mut buffered = std::io::BufWriter::with_capacity(1 << 20, file);
+    let mut buffered = std::io::BufWriter::with_capacity(1 << 20, file.as_file());
     write_format(format, mesh, &mut buffered).map_err(failed)?;
-    let file = buffered.into_inner().map_err(|error| failed(error.into_error()))?;
+    buffered.flush().map_err(failed)?;
+    drop(buffered);
     file.as_file().sync_all().map_err(failed)?;
     if let Ok(replaced) = std::fs::metadata(path) {
         file.as_file().set_permissions(replaced.permissions()).map_err(failed)?;

@@ -14,50 +14,79 @@ impl TriMesh {
     /// If an index is out of range.
     pub fn vertex_normals(&self) -> Vec<DVec3> {
         let mut normals = vec![DVec3::ZERO; self.positions.len()];
-        for triangle in 0..self.triangles.len() {
-            let weighted = self.weighted_corner_normals(triangle);
-            for (&vertex, normal) in self.triangles[triangle].iter().zip(weighted) {
+        for triangle in &self.triangles {
+            let weighted = weighted_normals(&self.positions, triangle);
+            for (&vertex, normal) in triangle.iter().zip(weighted) {
                 normals[vertex as usize] += normal;
             }
         }
         normals.into_iter().map(DVec3::normalize_or_zero).collect()
     }
 
-    /// Computes the shading normals of a deformed mesh anew, where it has any, and keeps its hard edges.
+    /// Turns the shading normals of a mesh that was deformed from the positions `rest`, where it has any.
     ///
-    /// The corners at a vertex that shared a normal before share one afterwards: the angle-weighted mean of their
-    /// triangles' normals. A corner whose triangles have no area keeps what it had.
+    /// The corners at a vertex that share a normal are turned together, by the smallest rotation that takes the
+    /// angle-weighted mean of their triangles' normals at rest to the present one; so hard edges stay hard, and normals
+    /// that were not such means keep their character. Where no triangle moved, normals keep their bits.
     ///
     /// # Panics
-    /// If an index is out of range.
-    pub fn update_normals(&mut self) {
-        if self.corner.normals.is_empty() {
-            return;
-        }
-        let old = std::mem::take(&mut self.corner.normals);
+    /// If an index is out of range, or `rest` has fewer positions than the mesh.
+    pub fn turn_normals(&mut self, rest: &[DVec3]) {
+        let normals = &self.corner.normals;
+        let has_moved = |vertex: u32| self.positions[vertex as usize] != rest[vertex as usize];
         let key = |corner: u32| {
             let (triangle, side) = (corner as usize / 3, corner as usize % 3);
-            (self.triangles[triangle][side], old[triangle][side].to_array().map(f64::to_bits))
+            (self.triangles[triangle][side], normals[triangle][side].to_array().map(f64::to_bits))
         };
-        let mut corners: Vec<u32> = (0..3 * old.len() as u32).collect();
+        // Only vertices next to a moved one need new normals.
+        let mut is_near = vec![false; self.positions.len()];
+        for triangle in self.triangles.iter().filter(|triangle| triangle.iter().any(|&vertex| has_moved(vertex))) {
+            triangle.iter().for_each(|&vertex| is_near[vertex as usize] = true);
+        }
+        let is_wanted = |&corner: &u32| is_near[self.triangles[corner as usize / 3][corner as usize % 3] as usize];
+        let mut corners: Vec<u32> = (0..3 * normals.len() as u32).filter(is_wanted).collect();
         corners.sort_unstable_by_key(|&corner| (key(corner), corner));
 
-        let weighted: Vec<_> = (0..old.len()).map(|triangle| self.weighted_corner_normals(triangle)).collect();
-        let mut new = old.clone();
+        let mut turned = normals.clone();
         for group in corners.chunk_by(|&a, &b| key(a) == key(b)) {
-            let at = |corner: u32| (corner as usize / 3, corner as usize % 3);
-            let sum: DVec3 = group.iter().map(|&corner| weighted[at(corner).0][at(corner).1]).sum();
-            if let Some(normal) = sum.try_normalize() {
-                group.iter().for_each(|&corner| new[at(corner).0][at(corner).1] = normal);
+            let triangles = group.iter().map(|corner| &self.triangles[*corner as usize / 3]);
+            if !triangles.flatten().any(|&vertex| has_moved(vertex)) {
+                continue;
+            }
+            let mean = |positions: &[DVec3]| {
+                let weighted = |&corner: &u32| {
+                    weighted_normals(positions, &self.triangles[corner as usize / 3])[corner as usize % 3]
+                };
+                group.iter().map(weighted).sum::<DVec3>().try_normalize()
+            };
+            if let (Some(from), Some(to)) = (mean(rest), mean(&self.positions)) {
+                for &corner in group {
+                    let normal = &mut turned[corner as usize / 3][corner as usize % 3];
+                    *normal = turn(*normal, from, to);
+                }
             }
         }
-        self.corner.normals = new;
+        self.corner.normals = turned;
     }
+}
 
-    /// The triangle's unit normal times its angle at each corner; zero for a triangle without area.
-    fn weighted_corner_normals(&self, triangle: usize) -> [DVec3; 3] {
-        let [a, b, c] = self.corners(triangle);
-        let normal = triangle_normal([a, b, c]);
-        [(b - a, c - a), (c - b, a - b), (a - c, b - c)].map(|(u, v)| normal * angle_between(u, v))
+/// The triangle's unit normal times its angle at each corner; zero for a triangle without area.
+fn weighted_normals(positions: &[DVec3], triangle: &[u32; 3]) -> [DVec3; 3] {
+    let [a, b, c] = triangle.map(|vertex| positions[vertex as usize]);
+    let normal = triangle_normal([a, b, c]);
+    [(b - a, c - a), (c - b, a - b), (a - c, b - c)].map(|(u, v)| normal * angle_between(u, v))
+}
+
+/// One plus the cosine of the angle between two directions below which they count as opposite, and a rotation between
+/// them has no axis. Larger, and normals that turn far jump; smaller, and the division loses all digits.
+const OPPOSITE: f64 = 1e-8;
+
+/// `normal` under the smallest rotation that takes the unit vector `from` to `to` (Rodrigues' formula).
+fn turn(normal: DVec3, from: DVec3, to: DVec3) -> DVec3 {
+    let cosine = from.dot(to);
+    if 1.0 + cosine < OPPOSITE {
+        return to;
     }
+    let axis = from.cross(to);
+    (cosine * normal + axis.cross(normal) + axis * (axis.dot(normal) / (1.0 + cosine))).normalize_or(to)
 }
