@@ -150,6 +150,9 @@ fn errors_for_machines() {
     assert_eq!(error["line"], 8);
     assert_eq!(error["key"], "tools.ball.support");
     assert!(error["error"].as_str().unwrap().contains("above 0"));
+    let settings = ["--set", "tools.ball.support=1", "--set", "integrate.step=1e-300"];
+    let run = folder.run(&[&["run", "press.toml", "--json"], &settings[..]].concat()).expect(2);
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&run.stderr).unwrap()["key"], "stroke.0");
     let run = folder.run(&["--json", "dance"]).expect(2);
     assert!(
         serde_json::from_str::<serde_json::Value>(&run.stderr).unwrap()["error"].as_str().unwrap().contains("dance")

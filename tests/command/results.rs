@@ -93,6 +93,12 @@ fn open_tool_meshes_are_taken_with_a_warning() {
     let run = folder.run(&["run", "press.toml", "--set", shape]).expect(0);
     assert!(run.stderr.contains("warning: tools.ball.shape.mesh: the mesh is open"), "{}", run.stderr);
     assert!(folder.path("out.ply").exists());
+
+    let run = folder.run(&["run", "press.toml", "--set", shape, "--json"]).expect(0);
+    let warning: Value = serde_json::from_str(&run.stderr).unwrap();
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert!(warning["warning"].as_str().unwrap().contains("the mesh is open"));
+    assert_eq!(report["warnings"][0], warning["warning"]);
 }
 
 #[test]

@@ -84,16 +84,16 @@ impl CommandError {
         if let Some(file) = file {
             json["file"] = file.to_string_lossy().into();
         }
-        let recipe = match self {
-            Self::Recipe { source, .. } => Some(source),
-            Self::Replay { source: ReplayError::Recipe(source), .. } => Some(source),
+        let key = match self {
+            Self::Recipe { source, .. } => Some(source.key.clone()),
+            Self::Replay { source, .. } => source.key(),
             _ => None,
         };
-        if let Some(RecipeError { location, key, .. }) = recipe {
-            if let Location::Line(line) = location {
-                json["line"] = (*line).into();
-            }
-            json["key"] = key.as_str().into();
+        if let Some(key) = key {
+            json["key"] = key.into();
+        }
+        if let Self::Recipe { source: RecipeError { location: Location::Line(line), .. }, .. } = self {
+            json["line"] = (*line).into();
         }
         json
     }

@@ -105,6 +105,20 @@ pub enum ReplayError {
     Cancelled(#[from] Cancelled),
 }
 
+impl ReplayError {
+    /// Dotted path of the recipe's key that could not be followed, where it is one.
+    pub fn key(&self) -> Option<String> {
+        match self {
+            Self::Recipe(error) => Some(error.key.clone()),
+            Self::DistanceField { name, .. } => Some(format!("tools.{name}.shape")),
+            Self::Tool { name, .. } => Some(format!("tools.{name}")),
+            Self::Stroke { index, .. } => Some(format!("stroke.{index}")),
+            Self::Deform(_) => Some("target".to_owned()),
+            Self::MissingMesh { .. } | Self::Cancelled(_) => None,
+        }
+    }
+}
+
 impl From<field::DeformError> for ReplayError {
     fn from(error: field::DeformError) -> Self {
         match error {
