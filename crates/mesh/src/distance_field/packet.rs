@@ -60,6 +60,16 @@ impl Packet {
             slot: [0; LANES],
         }
     }
+
+    /// Smallest and largest coordinates: those of the first and the last lane.
+    fn bounds(&self) -> [[f32; 3]; 2] {
+        [0, LANES - 1].map(|lane| [self.x[lane], self.y[lane], self.z[lane]])
+    }
+
+    /// The largest squared distance of all lanes.
+    fn farthest(&self) -> f32 {
+        self.squared.iter().copied().fold(0.0, greater)
+    }
 }
 
 impl<'a> PacketSearch<'a> {
@@ -68,28 +78,36 @@ impl<'a> PacketSearch<'a> {
     }
 
     /// Finds the nearest triangle for each lane. `guesses` are triangles likely to be near; they save time. `stack` is scratch.
-    pub(super) fn search(&self, packet: &mut Packet, guesses: &[u32], stack: &mut Vec<u32>) {
+    pub(super) fn search(&self, packet: &mut Packet, guesses: &[u32], stack: &mut Vec<(u32, f32)>) {
         for &slot in guesses {
             self.triangles[slot as usize].update(packet, slot);
         }
         let nodes = self.bvh.nodes();
-        let center = DVec3::new(middle(&packet.x), middle(&packet.y), middle(&packet.z));
+        let bounds = packet.bounds();
+        let mut farthest = packet.farthest();
         stack.clear();
-        stack.push(0);
-        while let Some(index) = stack.pop() {
+        stack.push((0, 0.0));
+        while let Some((index, squared)) = stack.pop() {
             let node = &nodes[index as usize];
-            if !may_improve(node, packet) {
+            // The first test, for the box of all lanes, is coarse and cheap.
+            if squared >= farthest || !may_improve(node, packet) {
                 continue;
             }
             if node.count > 0 {
                 for slot in node.first..node.first + node.count {
                     self.triangles[slot as usize].update(packet, slot);
                 }
+                farthest = packet.farthest();
             } else {
-                let [left, right] = [0, 1].map(|i| nodes[node.first as usize + i].squared_distance(center));
-                let far = u32::from(left <= right);
-                stack.push(node.first + far);
-                stack.push(node.first + 1 - far);
+                let [left, right] =
+                    [node.first, node.first + 1].map(|child| (child, apart(&nodes[child as usize], &bounds)));
+                let (near, far) = if left.1 <= right.1 { (left, right) } else { (right, left) };
+                if far.1 < farthest {
+                    stack.push(far);
+                }
+                if near.1 < farthest {
+                    stack.push(near);
+                }
             }
         }
     }
@@ -127,9 +145,10 @@ impl FlatTriangle {
         }
     }
 
-    /// Takes the triangle for the lanes where it is nearer than what they have.
-    #[inline]
+    /// Takes the triangle for the lanes where it is nearer than what they have. Two loops without branches: with the comparison in the
+    /// first, the compiler makes neither into vector code.
     fn update(&self, packet: &mut Packet, slot: u32) {
+        let mut squared = [0.0; LANES];
         for i in 0..LANES {
             let (x, y, z) = (packet.x[i] - self.origin[0], packet.y[i] - self.origin[1], packet.z[i] - self.origin[2]);
             let u = x * self.along[0] + y * self.along[1] + z * self.along[2];
@@ -150,12 +169,13 @@ impl FlatTriangle {
             let past_left = along_left - clamp(along_left, self.left_length);
             let to_left = past_left * past_left + from_left * from_left;
 
-            let inside = (v > 0.0) & (from_right > 0.0) & (from_left > 0.0);
-            let in_plane = if inside { 0.0 } else { lesser(to_base, lesser(to_right, to_left)) };
-            let squared = w * w + in_plane;
-            let nearer = squared < packet.squared[i];
-            packet.squared[i] = if nearer { squared } else { packet.squared[i] };
-            packet.slot[i] = if nearer { slot } else { packet.slot[i] };
+            let inside = lesser(v, lesser(from_right, from_left));
+            let in_plane = if inside > 0.0 { 0.0 } else { lesser(to_base, lesser(to_right, to_left)) };
+            squared[i] = w * w + in_plane;
+        }
+        for i in 0..LANES {
+            packet.slot[i] = if squared[i] < packet.squared[i] { slot } else { packet.slot[i] };
+            packet.squared[i] = lesser(squared[i], packet.squared[i]);
         }
     }
 }
@@ -171,6 +191,14 @@ fn may_improve(node: &Node, packet: &Packet) -> bool {
         nearer |= u32::from(x * x + y * y + z * z < packet.squared[i]);
     }
     nearer != 0
+}
+
+/// Squared distance between the box of a node and that of a packet.
+#[inline]
+fn apart(node: &Node, [min, max]: &[[f32; 3]; 2]) -> f32 {
+    let along = |axis: usize| greater(greater(node.min[axis] - max[axis], min[axis] - node.max[axis]), 0.0);
+    let [x, y, z] = [along(0), along(1), along(2)];
+    x * x + y * y + z * z
 }
 
 // `f32::min` and `max` also say what becomes of NaN, which costs three instructions more; there is none here.
@@ -189,8 +217,4 @@ fn greater(a: f32, b: f32) -> f32 {
 #[inline]
 fn clamp(x: f32, limit: f32) -> f32 {
     lesser(greater(x, 0.0), limit)
-}
-
-fn middle(lanes: &Lanes) -> f64 {
-    0.5 * (f64::from(lanes[0]) + f64::from(lanes[LANES - 1]))
 }
