@@ -2,6 +2,8 @@
 
 #[path = "command/bad_input.rs"]
 mod bad_input;
+#[path = "command/curves.rs"]
+mod curves;
 #[path = "command/folder.rs"]
 mod folder;
 #[path = "command/interruption.rs"]

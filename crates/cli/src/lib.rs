@@ -1,4 +1,5 @@
-//! The command `isochore`: deforms meshes from recipes, inspects them, and samples their distance.
+//! The command `isochore`: deforms meshes from recipes, inspects them, samples their distance, and
+//! carries frames and profiles along curves.
 //!
 //! Everything that it does is in the libraries; here are arguments, files, words and exit codes. A command line is read in
 //! two stages: [`arguments`] holds it as plain data, and each subcommand's own module makes objects of it.
@@ -15,14 +16,18 @@
 pub mod arguments;
 mod command_error;
 mod console;
+mod csv_table;
 mod demo;
 mod distance;
+mod frames;
 mod inspect;
 mod interrupt;
 mod job;
 mod run;
 mod schema;
+mod spine_file;
 mod staging;
+mod sweep;
 
 use std::{ffi::OsString, process::ExitCode};
 
@@ -75,6 +80,8 @@ fn execute(arguments: &Arguments) -> Result<Outcome, CommandError> {
         Command::Run(arguments) => run::run(arguments, &console),
         Command::Inspect(arguments) => inspect::inspect(arguments, &console),
         Command::Distance(arguments) => distance::distance(arguments, &console),
+        Command::Frames(arguments) => frames::frames(arguments, &console),
+        Command::Sweep(arguments) => sweep::sweep(arguments, &console),
         Command::Demo(arguments) => demo::demo(arguments, &console),
         Command::Schema(arguments) => schema::schema(arguments, &console),
     };

@@ -49,7 +49,7 @@
 //! let spline = PhSpline::follow(&TrigonometricCurve::torus_knot(), 1e-3)?;
 //! let profile = RationalProfile::polynomial(&[DVec2::new(-0.1, 0.05), DVec2::new(0.1, 0.05)]);
 //! let cubic = &spline.segments()[0];
-//! let patch = RationalPatch::sweep(cubic, &RationalRotation::symmetric(cubic), &profile, 0.0).expect("a curved spine");
+//! let patch = RationalPatch::sweep(cubic, &RationalRotation::symmetric(cubic), &profile, 0.0);
 //! assert!(patch.jet(0.5, 0.5).orthogonality().abs() < 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -100,8 +100,8 @@ pub use frame::{
 pub use frenet::{FrenetError, frenet_frames};
 pub use gauge_quadrature::exact_frames;
 pub use inversion::Inversion;
-pub use moebius::{MoebiusSegment, MoebiusSpline, MoebiusSplineError, Tilt};
-pub use ph_cubic::{PhCubic, PhCubicError, PhSpline, PhSplineError, RationalRotation};
+pub use moebius::{MoebiusSegment, MoebiusSpline, Tilt};
+pub use ph_cubic::{HermiteError, PhCubic, PhCubicError, PhSpline, PhSplineError, RationalRotation};
 pub use profile_surface::{
     PointGrid, ProfileJet, RationalPatch, RationalProfile, SurfaceJet, profile_surface_curvature, regularity,
     safe_profile_radius, sweep, sweep_varying,

@@ -19,7 +19,7 @@ use crate::{Curve, CurveJet, Frame, PhCubic, PhCubicError, perpendicular};
 
 mod spline;
 
-pub use spline::{MoebiusSpline, MoebiusSplineError};
+pub use spline::MoebiusSpline;
 
 /// Whether the center of inversion may leave its place opposite to the ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -9,15 +9,24 @@
 use glam::DVec3;
 
 use crate::frame::{FrameError, orthogonal_reference};
-use crate::{Curve, CurveJet, Frame, perpendicular};
+use crate::{Curve, CurveJet, Frame, perpendicular, reflect_twice};
 
 mod hermite;
 mod rational_rotation;
 mod spline;
 
-pub use hermite::PhCubicError;
+pub use hermite::{HermiteError, PhCubicError};
 pub use rational_rotation::RationalRotation;
 pub use spline::{PhSpline, PhSplineError};
+
+/// Height of the control polygon over its length up to which a cubic counts as straight. Larger: the constant frame of such a
+/// cubic is visibly off its normal plane. Smaller: rounding, one over the square of this times larger, decides how the Frenet
+/// frame turns.
+const STRAIGHT: f64 = 1e-5;
+
+/// The same ratio up to which exact frames come from double reflection, whose error is its fifth power over some hundreds.
+/// Larger: that error shows. Smaller: the rounding of the Frenet frame does.
+const NEARLY_STRAIGHT: f64 = 1e-3;
 
 /// A Pythagorean-hodograph cubic over [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +54,8 @@ impl PhCubic {
         let height = second.cross(first).length() / lengths[0];
         // det = ±2 L₂² sin²θ √(L₁L₃ − L₂²): the root from the determinant, since the difference cancels on flat curves.
         let determinant = first.dot(second.cross(third));
-        let twist = if height > 0.0 { -determinant / (2.0 * height * height) } else { 0.0 };
+        let is_straight = height <= STRAIGHT * lengths.iter().sum::<f64>();
+        let twist = if is_straight { 0.0 } else { -determinant / (2.0 * height * height) };
         Self { start, sides, lengths, middle, height, twist }
     }
 
@@ -94,9 +104,9 @@ impl PhCubic {
         -6.0 * self.twist / (speed * speed)
     }
 
-    /// True for a straight line, which has no Frenet frame.
+    /// True for a line, straight up to 1e-5 of its length, which has no Frenet frame worth the name.
     pub fn is_straight(&self) -> bool {
-        self.height == 0.0
+        self.height <= STRAIGHT * self.polygon_length()
     }
 
     /// The constant k of equation (33): 2k is the factor of the arc tangent in Ω. Zero for planar curves, below one.
@@ -119,12 +129,12 @@ impl PhCubic {
         6.0 * self.twist / self.speed(v)
     }
 
-    /// The Frenet frame at `v`; for a straight line, which has none, some constant frame.
+    /// The Frenet frame at `v`; for a straight line, which has none, a frame that does not turn.
     pub fn frenet_frame(&self, v: f64) -> Frame {
         let jet = self.jet(v);
         let tangent = jet.tangent();
         let normal = if self.is_straight() { None } else { jet.normal() };
-        let normal = normal.unwrap_or_else(|| perpendicular(self.sides[0].normalize()));
+        let normal = normal.unwrap_or_else(|| perpendicular(self.jet(0.0).tangent()));
         Frame::new(normal.reject_from_normalized(tangent).normalize(), tangent)
     }
 
@@ -134,6 +144,17 @@ impl PhCubic {
     /// # Errors
     /// [`FrameError::Reference`] where `reference` is along the first tangent.
     pub fn exact_frames(&self, parameters: &[f64], reference: DVec3) -> Result<Vec<Frame>, FrameError> {
+        if self.height <= NEARLY_STRAIGHT * self.polygon_length() {
+            let start = self.jet(0.0);
+            let reference = orthogonal_reference(reference, start.tangent())?;
+            let frame = |v: f64| {
+                let jet = self.jet(v);
+                let chord = jet.position - start.position;
+                let r = reflect_twice(chord, start.tangent(), jet.tangent(), reference).unwrap_or(reference);
+                Frame::new(r, jet.tangent())
+            };
+            return Ok(parameters.iter().map(|&v| frame(v)).collect());
+        }
         let start = self.frenet_frame(0.0);
         let angle = start.angle_to(orthogonal_reference(reference, start.t)?);
         Ok(parameters.iter().map(|&v| self.frenet_frame(v).turned(angle + self.rotation_to(v))).collect())

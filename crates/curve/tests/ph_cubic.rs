@@ -262,6 +262,21 @@ fn splines_follow_curves_to_the_tolerance() {
 }
 
 #[test]
+fn flat_cubics_have_quiet_frames() {
+    // Between a visible arc and a line, where the Frenet frame dissolves in rounding: the frame must not notice.
+    for bend in [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-13, 1e-15, 0.0] {
+        let (t0, t1) = (v(1.0, bend, 0.3 * bend), v(1.0, -bend, 0.2 * bend));
+        let cubic = PhCubic::hermite(v(3.0, 1.0, 2.0), v(4.0, 1.0, 2.0 + 0.25 * bend), t0, t1).unwrap();
+        let frames = cubic.exact_frames(&[0.0, 0.3, 1.0], DVec3::Y).unwrap();
+        let exact = exact_frames(&cubic, &[0.0, 0.3, 1.0], DVec3::Y).unwrap();
+        for (frame, exact) in frames.iter().zip(&exact) {
+            // The data are rounded at 2e-16 of coordinates up to 4, which the bend magnifies where the Frenet frame is used.
+            assert!(frame.r.distance(exact.r) < 2e-9, "bend {bend:e}: {:e}", frame.r.distance(exact.r));
+        }
+    }
+}
+
+#[test]
 fn inflections_are_cut() {
     // Planar: one inflection in the middle, where no cubic may cross.
     let spline = PhSpline::follow(&Bezier::s_curve(0.0), 1e-5).unwrap();

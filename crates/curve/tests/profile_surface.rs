@@ -34,11 +34,11 @@ fn largest_orthogonality(patch: &RationalPatch) -> f64 {
 }
 
 fn rational(cubic: &PhCubic, profile: &RationalProfile) -> RationalPatch {
-    RationalPatch::sweep(cubic, &RationalRotation::symmetric(cubic), profile, 0.0).unwrap()
+    RationalPatch::sweep(cubic, &RationalRotation::symmetric(cubic), profile, 0.0)
 }
 
 fn frenet(cubic: &PhCubic, profile: &RationalProfile) -> RationalPatch {
-    RationalPatch::sweep(cubic, &RationalRotation::FRENET, profile, 0.0).unwrap()
+    RationalPatch::sweep(cubic, &RationalRotation::FRENET, profile, 0.0)
 }
 
 #[test]
@@ -167,7 +167,12 @@ fn grids_keep_the_order_of_stations_and_profile() {
 }
 
 #[test]
-fn straight_spines_have_no_patch() {
-    let line = PhCubic::hermite(DVec3::ZERO, DVec3::X, DVec3::X, DVec3::X).unwrap();
-    assert_eq!(RationalPatch::sweep(&line, &RationalRotation::FRENET, &profile(), 0.0), None);
+fn straight_spines_sweep_a_prism() {
+    let line = PhCubic::hermite(DVec3::ZERO, DVec3::Z * 2.0, DVec3::Z, DVec3::Z).unwrap();
+    let patch = RationalPatch::sweep(&line, &RationalRotation::symmetric(&line), &profile(), 0.0);
+    for (u, v) in grid() {
+        let jet = patch.jet(u, v);
+        assert!((jet.position.z - 2.0 * v).abs() < 1e-14 && jet.orthogonality().abs() < 1e-14);
+        assert!(jet.position.truncate().distance(patch.jet(u, 0.0).position.truncate()) < 1e-15);
+    }
 }

@@ -3,21 +3,7 @@
 use glam::DVec3;
 
 use super::{MoebiusSegment, Tilt};
-use crate::{Curve, CurveJet, Frame, FrameError, PhCubicError, uniform_parameters};
-
-/// A segment without a rational curve.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("segment {segment}, from parameter {start} to {end}: {reason}")]
-pub struct MoebiusSplineError {
-    /// The segment, counted from zero.
-    pub segment: usize,
-    /// Parameter of the original curve at its start.
-    pub start: f64,
-    /// Parameter of the original curve at its end.
-    pub end: f64,
-    /// What its planar data lack.
-    pub reason: PhCubicError,
-}
+use crate::{Curve, CurveJet, Frame, FrameError, HermiteError, Spine, uniform_parameters};
 
 /// Rational curves of degree six with continuous tangent and a continuous rational rotation-minimizing frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,27 +18,37 @@ impl MoebiusSpline {
     ///
     /// # Errors
     /// The first segment without a solution.
-    pub fn interpolate(curve: &impl Curve, segments: usize, tilt: Tilt) -> Result<Self, MoebiusSplineError> {
-        let parameters = uniform_parameters(curve, segments);
-        let segments = parameters
+    pub fn interpolate(curve: &impl Curve, segments: usize, tilt: Tilt) -> Result<Self, HermiteError> {
+        let jets: Vec<CurveJet> = uniform_parameters(curve, segments).iter().map(|&u| curve.jet(u)).collect();
+        let segments = jets
             .windows(2)
             .enumerate()
             .map(|(segment, pair)| {
-                let (start, end) = (curve.jet(pair[0]), curve.jet(pair[1]));
-                MoebiusSegment::hermite(start.position, end.position, start.first, end.first, tilt)
-                    .map_err(|reason| MoebiusSplineError { segment, start: pair[0], end: pair[1], reason })
+                MoebiusSegment::hermite(pair[0].position, pair[1].position, pair[0].first, pair[1].first, tilt)
+                    .map_err(|reason| HermiteError { segment, reason })
             })
             .collect::<Result<_, _>>()?;
         Ok(Self { segments, closed: curve.is_closed() })
     }
 
-    /// Joins segments that are known to continue each other.
+    /// Passes through the points of `spine` with its tangents.
     ///
-    /// # Panics
-    /// If there are none.
-    pub fn from_segments(segments: Vec<MoebiusSegment>, closed: bool) -> Self {
-        assert!(!segments.is_empty(), "a spline has at least one segment");
-        Self { segments, closed }
+    /// # Errors
+    /// The first segment without a solution.
+    pub fn through(spine: &Spine, tilt: Tilt) -> Result<Self, HermiteError> {
+        let segments = (0..spine.segments())
+            .map(|i| {
+                MoebiusSegment::hermite(
+                    spine.point(i),
+                    spine.point(i + 1),
+                    spine.tangent(i),
+                    spine.tangent(i + 1),
+                    tilt,
+                )
+                .map_err(|reason| HermiteError { segment: i, reason })
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { segments, closed: spine.is_closed() })
     }
 
     /// The segments in order.

@@ -37,6 +37,16 @@ pub enum PhCubicError {
     ParallelTangents,
 }
 
+/// A segment between two samples that has no curve of the wanted kind.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("segment {segment}: {reason}")]
+pub struct HermiteError {
+    /// The segment, counted from zero.
+    pub segment: usize,
+    /// Why it has none.
+    pub reason: PhCubicError,
+}
+
 /// Tangents that differ by less are parallel. Larger: flat arcs are taken for lines. Smaller: rounding of the tangents passes
 /// as their difference.
 const PARALLEL: f64 = 1e-14;

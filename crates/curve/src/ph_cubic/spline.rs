@@ -1,8 +1,8 @@
 //! Splines of Pythagorean-hodograph cubics that follow a curve to a tolerance.
 
-use super::{PhCubic, PhCubicError};
+use super::{HermiteError, PhCubic, PhCubicError};
 use crate::quadrature::gauss;
-use crate::{Curve, CurveJet, Frame, FrameError, orthogonal_reference};
+use crate::{Curve, CurveJet, Frame, FrameError, Spine, orthogonal_reference};
 
 /// Halvings of a smooth piece of the curve at most. More only help tolerances near rounding.
 const DEPTH: u32 = 24;
@@ -81,17 +81,33 @@ impl PhSpline {
     ///
     /// # Errors
     /// The first segment without a cubic.
-    pub fn interpolate(curve: &impl Curve, segments: usize) -> Result<Self, PhSplineError> {
+    pub fn interpolate(curve: &impl Curve, segments: usize) -> Result<Self, HermiteError> {
         let parameters = crate::uniform_parameters(curve, segments);
         let mut cubics = Vec::with_capacity(segments);
         let mut error: f64 = 0.0;
-        for pair in parameters.windows(2) {
-            let cubic = between(&curve.jet(pair[0]), &curve.jet(pair[1]))
-                .map_err(|reason| PhSplineError::Segment { parameter: pair[0], reason })?;
+        for (segment, pair) in parameters.windows(2).enumerate() {
+            let cubic =
+                between(&curve.jet(pair[0]), &curve.jet(pair[1])).map_err(|reason| HermiteError { segment, reason })?;
             error = error.max(deviation(curve, &cubic, pair[0], pair[1]));
             cubics.push(cubic);
         }
         Ok(Self { segments: cubics, parameters, error, closed: curve.is_closed() })
+    }
+
+    /// Passes through the points of `spine` with its tangents; its parameters are the stations, and its error is zero, since
+    /// there is nothing between the points to compare with.
+    ///
+    /// # Errors
+    /// The first segment without a cubic.
+    pub fn through(spine: &Spine) -> Result<Self, HermiteError> {
+        let segments = (0..spine.segments())
+            .map(|i| {
+                PhCubic::hermite(spine.point(i), spine.point(i + 1), spine.tangent(i), spine.tangent(i + 1))
+                    .map_err(|reason| HermiteError { segment: i, reason })
+            })
+            .collect::<Result<_, _>>()?;
+        let parameters = (0..=spine.segments()).map(|i| i as f64).collect();
+        Ok(Self { segments, parameters, error: 0.0, closed: spine.is_closed() })
     }
 
     fn extend(

@@ -7,9 +7,6 @@ use glam::{DVec2, DVec3, DVec4};
 use crate::bernstein::{derivative, product, raise, value};
 use crate::{PhCubic, RationalRotation};
 
-/// Degree of the patch along the spine.
-const SPINE_DEGREE: usize = 9;
-
 /// A rational Bézier curve in the normal plane, over [0, 1].
 #[derive(Debug, Clone, PartialEq)]
 pub struct RationalProfile {
@@ -81,29 +78,31 @@ impl SurfaceJet {
 }
 
 impl RationalPatch {
+    /// Degree along the spine of every sweep of a Pythagorean-hodograph cubic.
+    pub const SPINE_DEGREE: usize = 9;
+
     /// The surface that `profile` sweeps along `cubic` with the frame that `rotation` turns out of the Frenet frame: degree 9 along the
     /// spine. The profile is first turned so that its axes at v = 0 are `initial_angle` away from the Frenet normal and
     /// binormal.
     ///
-    /// With [`RationalRotation::FRENET`] it is the sweep of the Frenet frame. Straight cubics have no such frame: none.
-    pub fn sweep(
-        cubic: &PhCubic,
-        rotation: &RationalRotation,
-        profile: &RationalProfile,
-        initial_angle: f64,
-    ) -> Option<Self> {
-        if cubic.is_straight() {
-            return None;
-        }
+    /// With [`RationalRotation::FRENET`] it is the sweep of the Frenet frame; a straight cubic has a constant frame in its
+    /// place, [`PhCubic::frenet_frame`].
+    pub fn sweep(cubic: &PhCubic, rotation: &RationalRotation, profile: &RationalProfile, initial_angle: f64) -> Self {
         let profile = profile.turned(initial_angle - rotation.initial_angle);
         let hodograph = cubic.sides().map(|side| 3.0 * side);
         let speed = cubic.speed_coefficients();
         let [d0, d1, d2] = hodograph;
         let [s0, s1, s2] = speed;
-        // σ x″ − σ′ x′ and x′ × x″ over 6 L₂ sin θ, both of degree two: numerators of normal and binormal over σ.
-        let height = (d0 / s0).cross(d1).length() * 2.0;
-        let normal = [2.0 * (s0 * d1 - s1 * d0), s0 * d2 - s2 * d0, 2.0 * (s1 * d2 - s2 * d1)].map(|c| c / height);
-        let binormal = [2.0 * d0.cross(d1), d0.cross(d2), 2.0 * d1.cross(d2)].map(|c| c / height);
+        let (normal, binormal) = if cubic.is_straight() {
+            let frame = cubic.frenet_frame(0.0);
+            (speed.map(|s| frame.r * s), speed.map(|s| frame.s * s))
+        } else {
+            // σ x″ − σ′ x′ and x′ × x″ over 6 L₂ sin θ, both of degree two: numerators of normal and binormal over σ.
+            let height = (d0 / s0).cross(d1).length() * 2.0;
+            let normal = [2.0 * (s0 * d1 - s1 * d0), s0 * d2 - s2 * d0, 2.0 * (s1 * d2 - s2 * d1)];
+            let binormal = [2.0 * d0.cross(d1), d0.cross(d2), 2.0 * d1.cross(d2)];
+            (normal.map(|c| c / height), binormal.map(|c| c / height))
+        };
         let (g, b) = (rotation.numerator, rotation.denominator);
         let multiply = |a: f64, b: f64| a * b;
         let scale = |a: f64, v: DVec3| v * a;
@@ -124,10 +123,11 @@ impl RationalPatch {
             .iter()
             .flat_map(|p| {
                 let (spine, f2, f3, weights) = (&spine, &f2, &f3, &weights);
-                (0..=SPINE_DEGREE).map(move |k| (spine[k] * p.z + f2[k] * p.x + f3[k] * p.y).extend(weights[k] * p.z))
+                (0..=Self::SPINE_DEGREE)
+                    .map(move |k| (spine[k] * p.z + f2[k] * p.x + f3[k] * p.y).extend(weights[k] * p.z))
             })
             .collect();
-        Some(Self { control_points, profile_degree: profile.control_points.len() - 1, spine_degree: SPINE_DEGREE })
+        Self { control_points, profile_degree: profile.control_points.len() - 1, spine_degree: Self::SPINE_DEGREE }
     }
 
     /// Position and derivatives at (u, v).

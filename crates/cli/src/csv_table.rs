@@ -1,0 +1,144 @@
+//! Tables of numbers in comma-separated files.
+
+use std::path::{Path, PathBuf};
+
+use crate::command_error::CommandError;
+
+/// Rows of numbers, all of the same length, with the lines that they came from.
+#[derive(Debug, Clone)]
+pub(crate) struct CsvTable {
+    path: PathBuf,
+    pub(crate) rows: Vec<Vec<f64>>,
+    lines: Vec<u64>,
+}
+
+impl CsvTable {
+    /// Reads the file at `path`, whose rows have one of the given numbers of columns. A first row without a single number is
+    /// a header; empty lines and lines that begin with # are skipped.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, a cell is not a finite number, or a row has another number of columns; row and column
+    /// are named.
+    pub(crate) fn read(path: &Path, allowed_columns: &[usize]) -> Result<Self, CommandError> {
+        let bytes = std::fs::read(path).map_err(|error| CommandError::cannot("read", path, &error))?;
+        Self::parse(path, &bytes, allowed_columns)
+    }
+
+    fn parse(path: &Path, bytes: &[u8], allowed_columns: &[usize]) -> Result<Self, CommandError> {
+        // Spreadsheets begin their files with a mark of the encoding.
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .from_reader(bytes);
+        let mut table = Self { path: path.to_owned(), rows: Vec::new(), lines: Vec::new() };
+        let mut is_first = true;
+        for record in reader.records() {
+            let record = record.map_err(|error| CommandError::file(path, error))?;
+            let line = record.position().map_or(0, csv::Position::line);
+            let is_header = is_first && record.iter().all(|cell| cell.parse::<f64>().is_err());
+            is_first = false;
+            if is_header {
+                continue;
+            }
+            let row =
+                parse_row(&record).map_err(|problem| CommandError::file(path, format!("row {line}, {problem}")))?;
+            table.check_columns(&row, line, allowed_columns)?;
+            table.rows.push(row);
+            table.lines.push(line);
+        }
+        if table.rows.is_empty() {
+            return Err(CommandError::file(path, "has no row of numbers"));
+        }
+        Ok(table)
+    }
+
+    fn check_columns(&self, row: &[f64], line: u64, allowed: &[usize]) -> Result<(), CommandError> {
+        let count = row.len();
+        if !allowed.contains(&count) {
+            let allowed: Vec<String> = allowed.iter().map(usize::to_string).collect();
+            let allowed = allowed.join(" or ");
+            return Err(CommandError::file(&self.path, format!("row {line} has {count} columns, not {allowed}")));
+        }
+        match self.rows.first() {
+            Some(first) if first.len() != count => Err(CommandError::file(
+                &self.path,
+                format!("row {line} has {count} columns, where row {} has {}", self.lines[0], first.len()),
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Columns of every row.
+    pub(crate) fn columns(&self) -> usize {
+        self.rows[0].len()
+    }
+
+    /// An error about the row with `index`, counted from zero.
+    pub(crate) fn error(&self, index: usize, problem: impl std::fmt::Display) -> CommandError {
+        CommandError::file(&self.path, format!("row {}: {problem}", self.line(index)))
+    }
+
+    /// An error about two rows.
+    pub(crate) fn error_between(&self, first: usize, second: usize, problem: impl std::fmt::Display) -> CommandError {
+        CommandError::file(&self.path, format!("rows {} and {}: {problem}", self.line(first), self.line(second)))
+    }
+
+    /// An error about the whole table.
+    pub(crate) fn error_in_file(&self, problem: impl std::fmt::Display) -> CommandError {
+        CommandError::file(&self.path, problem)
+    }
+
+    /// The line of the row with `index`; beyond the end, that of the last row.
+    fn line(&self, index: usize) -> u64 {
+        self.lines[index.min(self.lines.len() - 1)]
+    }
+}
+
+fn parse_row(record: &csv::StringRecord) -> Result<Vec<f64>, String> {
+    record
+        .iter()
+        .enumerate()
+        .map(|(index, cell)| match cell.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            Ok(number) => Err(format!("column {}: {number} is not a finite number", index + 1)),
+            Err(_) => Err(format!("column {}: `{cell}` is not a number", index + 1)),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<CsvTable, String> {
+        CsvTable::parse(Path::new("a.csv"), text.as_bytes(), &[3, 6]).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn headers_comments_and_marks_are_skipped() {
+        for text in ["1,2,3\n4,5,6\n", "x,y,z\n1, 2 ,3\n# four\n4,5,6", "\u{feff}1,2,3\r\n\r\n4,5,6\r\n"] {
+            let table = parse(text).unwrap();
+            assert_eq!(table.rows, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{text}");
+        }
+    }
+
+    #[test]
+    fn bad_cells_are_named_by_row_and_column() {
+        for (text, words) in [
+            ("1,2,3\n4,5,six\n", "a.csv: row 2, column 3: `six` is not a number"),
+            ("1,2,x\n", "a.csv: row 1, column 3: `x` is not a number"),
+            ("x,y,z\n1,NaN,3\n", "a.csv: row 2, column 2: NaN is not a finite number"),
+            ("1,2,3\n4,5,1e999\n", "a.csv: row 2, column 3: inf is not a finite number"),
+            ("1,2,3\n4,5,\n", "a.csv: row 2, column 3: `` is not a number"),
+            ("1,2\n", "a.csv: row 1 has 2 columns, not 3 or 6"),
+            ("1,2,3\n1,2,3,4,5,6\n", "a.csv: row 2 has 6 columns, where row 1 has 3"),
+            ("x,y,z\n", "a.csv: has no row of numbers"),
+            ("", "a.csv: has no row of numbers"),
+        ] {
+            assert_eq!(parse(text).unwrap_err(), words);
+        }
+    }
+}
