@@ -12,13 +12,14 @@ fn number(value: &Value) -> f64 {
 
 #[test]
 fn run_writes_everything_it_is_asked_for() {
-    let outputs = "frames = { count = 3, directory = \"frames\" }\nreport = \"report.json\"\n";
+    let outputs = "preview = \"out.png\"\nframes = { count = 3, directory = \"frames\" }\nreport = \"report.json\"\n";
     let folder = Folder::with(&[("press.toml", &format!("{PRESS}{outputs}"))]);
     let run = folder.run(&["run", "press.toml"]).expect(0);
     assert_eq!(run.stdout, "");
     let names: Vec<String> = folder.contents().into_keys().collect();
     let frames = ["frames/", "frames/frame_0000.ply", "frames/frame_0001.ply", "frames/frame_0002.ply"];
-    assert_eq!(names, [&frames[..], &["out.ply", "press.toml", "report.json"]].concat());
+    assert_eq!(names, [&frames[..], &["out.ply", "out.png", "press.toml", "report.json"]].concat());
+    assert!(folder.read("out.png").starts_with(b"\x89PNG"));
     assert_eq!(folder.read("frames/frame_0002.ply"), folder.read("out.ply"), "the last frame is the result");
     assert_ne!(folder.read("frames/frame_0001.ply"), folder.read("out.ply"));
 
@@ -77,9 +78,11 @@ fn same_bytes_for_any_number_of_threads() {
         "tools.ball.shape={ kind = \"mesh\", mesh = \"king.obj\", resolution = 24, transform = { scale = 0.8 } }";
     for (shape, output) in [(king, "a.obj"), (king, "a.glb"), ("tools.ball.support=0.3", "a.stl")] {
         let bytes = ["1", "2", "8", "8"].map(|threads| {
-            let arguments = ["run", "press.toml", "--threads", threads, "--output", output, "--set", shape];
+            let preview = "output.preview=a.png";
+            let arguments =
+                ["run", "press.toml", "--threads", threads, "--output", output, "--set", shape, "--set", preview];
             folder.run(&arguments).expect(0);
-            folder.read(output)
+            (folder.read(output), folder.read("a.png"))
         });
         assert!(bytes.iter().all(|other| *other == bytes[0]), "{output}");
     }
@@ -249,6 +252,7 @@ fn demo_fills_a_folder_with_something_that_runs_again() {
     assert_eq!(report["promises"], serde_json::json!({ "volume": true, "no_new_self_intersections": true }));
     assert!(number(&report["max_displacement"]) > 0.1);
     let before = folder.contents();
+    assert!(before.keys().any(|name| name.ends_with(".png")));
     folder.run(&["run", "isochore-demo/press.toml"]).expect(0);
     let mut after = folder.contents();
     // Only the times in the report differ.

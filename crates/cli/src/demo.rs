@@ -45,7 +45,7 @@ pub(crate) fn demo(arguments: &DemoArguments, console: &Console) -> Result<Outco
     }
     let outcome = conclude(&report, job.outputs.mesh.as_deref(), console);
     if !console.is_json() {
-        let outputs = [&job.outputs.report];
+        let outputs = [&job.outputs.preview, &job.outputs.report];
         for path in outputs.into_iter().flatten() {
             console.say(path.display());
         }

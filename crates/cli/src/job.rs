@@ -16,7 +16,7 @@ use isochore_sculpt::{
     replay,
 };
 
-use crate::{command_error::CommandError, console::Console, staging::Staging};
+use crate::{command_error::CommandError, console::Console, preview, staging::Staging};
 
 /// A recipe and the places of its outputs.
 #[derive(Debug)]
@@ -34,6 +34,7 @@ pub(crate) struct Job {
 pub(crate) struct Outputs {
     pub(crate) mesh: Option<PathBuf>,
     pub(crate) report: Option<PathBuf>,
+    pub(crate) preview: Option<PathBuf>,
     pub(crate) frames: Option<(u32, PathBuf)>,
 }
 
@@ -58,6 +59,7 @@ impl Job {
         let outputs = Outputs {
             mesh: place(&recipe.output.mesh),
             report: place(&recipe.output.report),
+            preview: place(&recipe.output.preview),
             frames: recipe.output.frames.as_ref().map(|frames| (frames.count, beside(path, &frames.directory))),
         };
         Ok(Self { path: path.to_owned(), text: bytes, settings: settings.to_vec(), recipe, outputs })
@@ -83,9 +85,6 @@ impl Job {
         };
         // All places are taken first: whoever lacks a folder should not learn it after the work.
         let drafts = Drafts::new(&self.outputs, &mut staging)?;
-        if self.recipe.output.preview.is_some() {
-            console.warn("warning", "output.preview: this version draws no pictures");
-        }
         let replay = replay(&self.recipe, meshes, console).map_err(failed)?;
 
         let start = Instant::now();
@@ -93,6 +92,11 @@ impl Job {
         if let Some(Draft { path, format }) = &drafts.mesh {
             write_mesh(&staging, path, &replay.deformed.mesh)?;
             written = Some(format.stored(&replay.deformed.mesh));
+        }
+        if let Some(draft) = &drafts.preview {
+            let picture = preview::before_and_after(&replay.scene.target, &replay.deformed.mesh)
+                .map_err(|error| CommandError::file(staging.target_of(draft), error))?;
+            staging.write(draft, &picture)?;
         }
         self.write_frames(&drafts.frames, &replay, &staging, console).map_err(|error| match error {
             FrameError::Replay(error) => failed(error),
@@ -141,6 +145,7 @@ enum FrameError {
 #[derive(Debug)]
 struct Drafts {
     mesh: Option<Draft>,
+    preview: Option<PathBuf>,
     frames: Vec<PathBuf>,
     report: Option<PathBuf>,
 }
@@ -159,7 +164,7 @@ impl Drafts {
             mesh = Some(Draft { path: staging.add_file(path)?, format });
         }
         let mut optional = |path: &Option<PathBuf>| path.as_ref().map(|path| staging.add_file(path)).transpose();
-        let report = optional(&outputs.report)?;
+        let [preview, report] = [optional(&outputs.preview)?, optional(&outputs.report)?];
         let mut frames = Vec::new();
         if let Some((count, folder)) = &outputs.frames {
             let extension = outputs.mesh.as_ref().and_then(|path| path.extension()).ok_or_else(|| {
@@ -171,7 +176,7 @@ impl Drafts {
                 frames.push(staging.add_file(&name)?);
             }
         }
-        Ok(Self { mesh, frames, report })
+        Ok(Self { mesh, preview, frames, report })
     }
 }
 

@@ -23,6 +23,7 @@ mod frames;
 mod inspect;
 mod interrupt;
 mod job;
+mod preview;
 mod run;
 mod schema;
 mod spine_file;
