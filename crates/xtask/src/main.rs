@@ -1,2 +1,34 @@
 //! Tasks of the workspace: `cargo xtask NAME`.
-fn main() {}
+
+mod oracle;
+mod shell;
+mod test;
+
+use std::process::ExitCode;
+
+use shell::TaskResult;
+
+type Task = (&'static str, &'static str, fn() -> TaskResult);
+
+const TASKS: [Task; 2] = [
+    ("test", "formatting, lints, all tests, then the oracle: what must pass before a change goes in", test::run_all),
+    ("oracle", "compare what recipes write with PyMeshLab and libigl, installed into the target folder", oracle::run_judges),
+];
+
+fn main() -> ExitCode {
+    let name = std::env::args().nth(1).unwrap_or_default();
+    let Some((_, _, run)) = TASKS.iter().find(|(task, ..)| *task == name) else {
+        eprintln!("usage: cargo xtask TASK");
+        for (task, what, _) in TASKS {
+            eprintln!("  {task:<8} {what}");
+        }
+        return ExitCode::from(2);
+    };
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

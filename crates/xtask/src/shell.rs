@@ -1,0 +1,36 @@
+//! Running programs and finding folders.
+
+use std::{
+    error::Error,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// What every task returns: nothing, or one line that says what failed.
+pub(crate) type TaskResult<T = ()> = Result<T, Box<dyn Error>>;
+
+/// The folder of the workspace.
+pub(crate) fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the task runner lies two folders down")
+}
+
+/// Where builds and all that tasks install or make go.
+pub(crate) fn target() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from)
+}
+
+/// Shows a command and runs it in the workspace; its failure is the error.
+pub(crate) fn run(command: &mut Command) -> TaskResult {
+    command.current_dir(workspace());
+    let shown = format!("{command:?}").replace('"', "");
+    eprintln!("$ {shown}");
+    let status = command.status().map_err(|error| format!("{shown}: {error}"))?;
+    if status.success() { Ok(()) } else { Err(format!("{shown}: {status}").into()) }
+}
+
+/// Cargo, with these arguments.
+pub(crate) fn cargo(arguments: &[&str]) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments);
+    command
+}

@@ -1,0 +1,14 @@
+//! Everything that must pass before a change goes in.
+
+use crate::{
+    oracle,
+    shell::{TaskResult, cargo, run},
+};
+
+/// Checks formatting and lints, runs all tests, then the oracle.
+pub(crate) fn run_all() -> TaskResult {
+    run(&mut cargo(&["fmt", "--all", "--check"]))?;
+    run(&mut cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--quiet", "--", "--deny", "warnings"]))?;
+    run(&mut cargo(&["test", "--workspace", "--locked", "--quiet"]))?;
+    oracle::run_judges()
+}
