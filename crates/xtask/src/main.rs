@@ -1,5 +1,7 @@
 //! Tasks of the workspace: `cargo xtask NAME`.
 
+#[cfg(test)]
+mod arrows;
 mod oracle;
 mod shell;
 mod test;
