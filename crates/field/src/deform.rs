@@ -118,7 +118,8 @@ pub fn deform(
 
     let (subdivision, image) = tessellation.into_subdivision();
     let rest = mesh.subdivided(&subdivision);
-    let mesh = TriMesh { positions: image, ..rest.clone() };
+    let mut mesh = TriMesh { positions: image, ..rest.clone() };
+    mesh.turn_normals(&rest.positions);
     Ok(Deformed { mesh, rest, receipt })
 }
 

@@ -11,10 +11,7 @@ const ALLOWED: [(&str, &[&str]); 6] = [
     ("isochore-field", &["isochore-mesh", "isochore-curve"]),
     ("isochore-sculpt", &["isochore-mesh", "isochore-field"]),
     ("isochore-picture", &["isochore-mesh"]),
-    (
-        "isochore",
-        &["isochore-mesh", "isochore-curve", "isochore-field", "isochore-sculpt", "isochore-picture"],
-    ),
+    ("isochore", &["isochore-mesh", "isochore-curve", "isochore-field", "isochore-sculpt", "isochore-picture"]),
 ];
 
 #[test]

@@ -14,7 +14,11 @@ type Task = (&'static str, &'static str, fn() -> TaskResult);
 
 const TASKS: [Task; 2] = [
     ("test", "formatting, lints, all tests, then the oracle: what must pass before a change goes in", test::run_all),
-    ("oracle", "compare what recipes write with PyMeshLab and libigl, installed into the target folder", oracle::run_judges),
+    (
+        "oracle",
+        "compare what recipes write with PyMeshLab and libigl, installed into the target folder",
+        oracle::run_judges,
+    ),
 ];
 
 fn main() -> ExitCode {

@@ -168,6 +168,22 @@ fn an_open_mesh_is_deformed_without_a_volume() {
 }
 
 #[test]
+fn shading_normals_turn_with_the_surface() {
+    let mut sphere = primitives::icosphere(1.0, 3);
+    let normals = sphere.vertex_normals();
+    sphere.corner.normals =
+        sphere.triangles.iter().map(|corners| corners.map(|vertex| normals[vertex as usize])).collect();
+    let quarter = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Z, FRAC_PI_2).unwrap());
+    let twisted = run(&sphere, &[quarter], &BARE).mesh;
+    let expected = twisted.vertex_normals();
+    for (corners, normals) in twisted.triangles.iter().zip(&twisted.corner.normals) {
+        for (&vertex, normal) in corners.iter().zip(normals) {
+            assert!(normal.dot(expected[vertex as usize]) > 1.0 - 1e-9);
+        }
+    }
+}
+
+#[test]
 fn threads_do_not_change_the_bits() {
     let strokes = [press(0.125), Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Y, 0.4).unwrap())];
     let on = |threads| {
