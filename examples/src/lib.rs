@@ -1,0 +1,85 @@
+//! What the example programs share: swept bodies, a color scale, and files for a figure.
+
+#![expect(clippy::print_stdout, reason = "examples tell where their files are")]
+
+use std::{error::Error, fs, path::PathBuf};
+
+use glam::{DVec2, DVec3};
+use isochore_curve::{Frame, sweep, sweep_varying};
+use isochore_mesh::{GridMesh, TriMesh, io};
+use isochore_picture::{Camera, Options, Panel, render};
+
+/// Points of a spine with their frames.
+pub type Stations = Vec<(DVec3, Frame)>;
+
+/// Writes `NAME.glb` and `NAME.png` into the folder that is the program's argument, `gallery` without one.
+///
+/// # Errors
+/// Where the picture cannot be drawn or a file cannot be written.
+pub fn save_figure(
+    name: &str,
+    mesh: &TriMesh,
+    panels: &[Panel],
+    camera: &Camera,
+    options: &Options,
+) -> Result<(), Box<dyn Error>> {
+    let folder = PathBuf::from(std::env::args_os().nth(1).unwrap_or_else(|| "gallery".into()));
+    fs::create_dir_all(&folder)?;
+    let mesh_path = folder.join(name).with_extension("glb");
+    io::write(&mesh_path, mesh)?;
+    let picture_path = folder.join(name).with_extension("png");
+    fs::write(&picture_path, render(panels, camera, options)?.to_png())?;
+    println!("{} and {}", picture_path.display(), mesh_path.display());
+    Ok(())
+}
+
+/// The body that a closed `profile`, counter-clockwise, sweeps along `stations`: capped, or closed where `closes` says that the last
+/// station is the first.
+pub fn swept_body(stations: &[(DVec3, Frame)], profile: &[DVec2], closes: bool) -> TriMesh {
+    let rows = if closes { &stations[..stations.len() - 1] } else { stations };
+    let grid = sweep(rows, profile);
+    let mesh = GridMesh { points: &grid.points, columns: grid.columns, rows_close: closes, columns_close: true };
+    if closes { mesh.mesh() } else { mesh.capped_mesh(profile) }
+}
+
+/// The same with a profile of `columns` points that changes from station to station; the ends are closed by the outline of the first.
+pub fn varying_body(stations: &[(DVec3, Frame)], columns: usize, profile: impl Fn(usize, usize) -> DVec2) -> TriMesh {
+    let grid = sweep_varying(stations, columns, &profile);
+    let outline: Vec<DVec2> = (0..columns).map(|column| profile(0, column)).collect();
+    GridMesh { points: &grid.points, columns, rows_close: false, columns_close: true }.capped_mesh(&outline)
+}
+
+/// A flat rectangular profile that shows how a frame turns: `width` along r, `height` along s.
+pub fn strap(width: f64, height: f64) -> [DVec2; 4] {
+    [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(x, y)| DVec2::new(0.5 * width * x, 0.5 * height * y))
+}
+
+/// A regular polygon of `corners` corners, counter-clockwise.
+pub fn round(radius: f64, corners: usize) -> Vec<DVec2> {
+    (0..corners)
+        .map(|i| libm::sincos(std::f64::consts::TAU * i as f64 / corners as f64))
+        .map(|(sin, cos)| DVec2::new(cos, sin) * radius)
+        .collect()
+}
+
+/// Two meshes as one.
+pub fn joined(mut mesh: TriMesh, other: &TriMesh) -> TriMesh {
+    let offset = mesh.positions.len() as u32;
+    mesh.positions.extend(&other.positions);
+    mesh.triangles.extend(other.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + offset)));
+    mesh
+}
+
+/// Linear RGB from dark blue through green to yellow for a share from 0 to 1.
+pub fn scale_color(share: f64) -> DVec3 {
+    const STOPS: [DVec3; 5] = [
+        DVec3::new(0.06, 0.0, 0.09),
+        DVec3::new(0.04, 0.08, 0.26),
+        DVec3::new(0.015, 0.28, 0.26),
+        DVec3::new(0.12, 0.60, 0.10),
+        DVec3::new(0.98, 0.80, 0.02),
+    ];
+    let position = share.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
+    let below = (position as usize).min(STOPS.len() - 2);
+    STOPS[below].lerp(STOPS[below + 1], position - below as f64)
+}
