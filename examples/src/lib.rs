@@ -62,6 +62,20 @@ pub fn round(radius: f64, corners: usize) -> Vec<DVec2> {
         .collect()
 }
 
+/// How far `frames` turn about their tangents against rotation-minimizing ones at the same stations, back and forth all counted,
+/// radians.
+pub fn total_turning(frames: &[Frame], minimizing: &[Frame]) -> f64 {
+    let angles: Vec<f64> = frames.iter().zip(minimizing).map(|(frame, other)| other.angle_to(frame.r)).collect();
+    angles
+        .windows(2)
+        .map(|pair| {
+            let step = pair[1] - pair[0];
+            let turn = std::f64::consts::TAU;
+            (step - turn * libm::round(step / turn)).abs()
+        })
+        .sum()
+}
+
 /// Two meshes as one.
 pub fn joined(mut mesh: TriMesh, other: &TriMesh) -> TriMesh {
     let offset = mesh.positions.len() as u32;

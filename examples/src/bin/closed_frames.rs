@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let speed = total_angular_speed(&spine, &twisted.angles);
             let squared = total_squared_angular_speed(&spine, &twisted.angles);
             bodies.push((
-                format!("{turns} turns more: gap {gap:.0e}\nspeed {speed:.3}, squared {squared:.3}"),
+                format!("{turns} turns more: gap {gap:.1e}\nspeed {speed:.3}, squared {squared:.3}"),
                 banded(&spine, &twisted.stations, true),
             ));
         }
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 Panel::new(caption.clone()).with(Body::new(mesh).with_paint(Paint::Triangles(colors)))
             })
             .collect();
-        let camera = Camera::from_direction(DVec3::new(0.3, -1.0, 0.9));
+        let camera = Camera::from_direction(DVec3::new(0.25, -0.7, 1.1));
         let options = Options { width: 2000, height: 560, ..Options::default() };
         let all = bodies.iter().skip(1).fold(TriMesh::default(), |all, (_, (mesh, _))| joined(all, mesh));
         save_figure(name, &all, &panels, &camera, &options)?;

@@ -45,8 +45,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "\n* differs from the published digits. Projection and rotation with 64 segments are misprinted: their published\n  \
          ratios, 0.579 and 0.737, contradict second order. Runge-Kutta with 64 and 128 segments is 0.8 and 0.4 percent off, of\n  \
-         unknown cause; rotation with 256 segments, 4.7548E-2, is published as 4.76E-2, half a unit up. All other entries agree, but\n  \
-         that 7.955E-8 is published cut short, as 7.95E-8.\n"
+         unknown cause; of rotation with 256 segments the largest error along the curve is published, 4.76E-2, where the end has\n  \
+         4.7548E-2. All other entries agree, but that 7.955E-8 is published cut short, as 7.95E-8.\n"
     );
     table_five()
 }

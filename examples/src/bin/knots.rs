@@ -1,25 +1,25 @@
 //! The cinquefoil and the trefoil knot, swept with closed rotation-minimizing frames and with Frenet frames (figures 7.2 and 7.3 of Zheng's
 //! thesis).
 
-use std::{error::Error, f64::consts::TAU};
+use std::error::Error;
 
 use glam::DVec3;
 use isochore_curve::{
-    Frame, FrameMethod, Spine, TrigonometricCurve, TwistLaw, close_frames, frenet_frames, length,
-    rotation_minimizing_frames, total_torsion, uniform_parameters,
+    Frame, FrameMethod, Spine, TrigonometricCurve, TwistLaw, close_frames, frenet_frames, rotation_minimizing_frames,
+    total_torsion, uniform_parameters,
 };
-use isochore_examples::{Stations, save_figure, strap, swept_body};
+use isochore_examples::{Stations, save_figure, strap, swept_body, total_turning};
 use isochore_mesh::TriMesh;
 use isochore_picture::{Body, Camera, Options, Paint, Panel};
 
 const SEGMENTS: usize = 1500;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    draw("cinquefoil", &TrigonometricCurve::cinquefoil(), DVec3::new(0.2, -0.5, 1.4))?;
-    draw("trefoil", &TrigonometricCurve::trefoil(), DVec3::new(1.0, 1.0, 1.0))
+    draw("cinquefoil", &TrigonometricCurve::cinquefoil(), 0.4, DVec3::new(0.2, -0.7, 1.2))?;
+    draw("trefoil", &TrigonometricCurve::trefoil(), 40.0, DVec3::new(1.0, 1.0, 1.0))
 }
 
-fn draw(name: &str, curve: &TrigonometricCurve, view: DVec3) -> Result<(), Box<dyn Error>> {
+fn draw(name: &str, curve: &TrigonometricCurve, width: f64, view: DVec3) -> Result<(), Box<dyn Error>> {
     let spine = Spine::sample(curve, SEGMENTS)?;
     let frenet = frenet_frames(curve, &uniform_parameters(curve, SEGMENTS))?;
     let minimizing =
@@ -27,20 +27,7 @@ fn draw(name: &str, curve: &TrigonometricCurve, view: DVec3) -> Result<(), Box<d
     let closed = close_frames(&spine, &minimizing.stations, TwistLaw::ArcLength, 0);
     let twist = closed.angles[SEGMENTS];
     // The Frenet frame turns by the torsion wherever it goes, forward and back.
-    let turning = |frames: &[Frame]| -> f64 {
-        frames
-            .iter()
-            .zip(&minimizing.stations)
-            .map(|(frame, other)| other.angle_to(frame.r))
-            .collect::<Vec<_>>()
-            .windows(2)
-            .map(|pair| {
-                let step = pair[1] - pair[0];
-                (step - TAU * libm::round(step / TAU)).abs()
-            })
-            .sum()
-    };
-    let width = 0.02 * length(curve);
+    let turning = total_turning(&frenet, &minimizing.stations);
     let bodies = [
         (
             format!("{name}: closed rotation-minimizing frame\ntwist {twist:.4} rad in all, evenly"),
@@ -50,7 +37,7 @@ fn draw(name: &str, curve: &TrigonometricCurve, view: DVec3) -> Result<(), Box<d
             format!(
                 "{name}: Frenet frame, total torsion {:.4} rad\nturns by {:.2} rad, forward and back",
                 total_torsion(curve),
-                turning(&frenet)
+                turning
             ),
             body(&spine, &frenet, width),
         ),
