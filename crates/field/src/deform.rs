@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use glam::DVec3;
-use isochore_mesh::{Cancelled, ClosedMesh, Monitor, TriMesh};
+use isochore_mesh::{Cancelled, ClosedMesh, MeshError, Monitor, TriMesh};
 
 use crate::{
     Note, Receipt, RefineOptions, Stroke, StrokeReceipt,
@@ -40,11 +40,14 @@ pub struct Deformed {
 }
 
 /// Why a deformation gave nothing.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DeformError {
     /// The monitor stopped it.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The mesh has an index out of range or a coordinate that is not finite.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// A coordinate left the range of numbers.
     #[error("vertex {vertex} is carried out of the range of numbers; coordinates or strokes are too large")]
     Overflow {
@@ -77,6 +80,7 @@ pub fn deform(
     options: &DeformOptions,
     monitor: &dyn Monitor,
 ) -> Result<Deformed, DeformError> {
+    mesh.check_valid()?;
     let volume_before = ClosedMesh::new(mesh).is_ok().then(|| signed_volume(&mesh.positions, &mesh.triangles));
     let mut receipt = Receipt { volume_before, ..Receipt::default() };
     let mut tessellation = Tessellation::new(mesh);

@@ -168,6 +168,14 @@ fn an_open_mesh_is_deformed_without_a_volume() {
 }
 
 #[test]
+fn an_index_out_of_range_is_refused() {
+    let mut sphere = primitives::icosphere(1.0, 1);
+    sphere.triangles[7][2] = 99;
+    let error = deform(&sphere, &[press(0.125)], &BARE, &Silent).unwrap_err();
+    assert!(matches!(error, DeformError::Mesh(_)) && error.to_string().contains("99"), "{error}");
+}
+
+#[test]
 fn shading_normals_turn_with_the_surface() {
     let mut sphere = primitives::icosphere(1.0, 3);
     let normals = sphere.vertex_normals();
