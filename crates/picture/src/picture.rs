@@ -33,7 +33,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { width: 1600, height: 860, samples: 3, crease_angle: 40.0 }
+        Self { width: 1600, height: 860, samples: 3, crease_angle: 55.0 }
     }
 }
 
@@ -236,7 +236,7 @@ mod tests {
     use super::*;
     use crate::{Body, Paint};
 
-    const SMALL: Options = Options { width: 200, height: 100, samples: 2, crease_angle: 40.0 };
+    const SMALL: Options = Options { width: 200, height: 100, samples: 2, crease_angle: 55.0 };
 
     /// A square in the plane through the origin that faces the default camera, half a unit to each side.
     fn square() -> TriMesh {

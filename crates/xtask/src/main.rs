@@ -2,6 +2,7 @@
 
 #[cfg(test)]
 mod arrows;
+mod data;
 mod oracle;
 mod shell;
 mod test;
@@ -12,13 +13,14 @@ use shell::TaskResult;
 
 type Task = (&'static str, &'static str, fn() -> TaskResult);
 
-const TASKS: [Task; 2] = [
+const TASKS: [Task; 3] = [
     ("test", "formatting, lints, all tests, then the oracle: what must pass before a change goes in", test::run_all),
     (
         "oracle",
         "compare what recipes write with PyMeshLab and libigl, installed into the target folder",
         oracle::run_judges,
     ),
+    ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
 ];
 
 fn main() -> ExitCode {
