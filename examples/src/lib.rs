@@ -5,7 +5,7 @@
 use std::{error::Error, fs, path::PathBuf};
 
 use glam::{DVec2, DVec3};
-use isochore_curve::{Frame, sweep, sweep_varying};
+use isochore_curve::{Frame, rotate_minimally, sweep, sweep_varying};
 use isochore_mesh::{GridMesh, TriMesh, io};
 use isochore_picture::{Camera, Options, Panel, render};
 
@@ -62,18 +62,21 @@ pub fn round(radius: f64, corners: usize) -> Vec<DVec2> {
         .collect()
 }
 
-/// How far `frames` turn about their tangents against rotation-minimizing ones at the same stations, back and forth all counted,
-/// radians.
-pub fn total_turning(frames: &[Frame], minimizing: &[Frame]) -> f64 {
-    let angles: Vec<f64> = frames.iter().zip(minimizing).map(|(frame, other)| other.angle_to(frame.r)).collect();
-    angles
+/// How far `frames` turn about their tangents from station to station, against the smallest rotation between those; back and forth
+/// all counted, radians.
+pub fn total_turning(frames: &[Frame]) -> f64 {
+    frames
         .windows(2)
         .map(|pair| {
-            let step = pair[1] - pair[0];
-            let turn = std::f64::consts::TAU;
-            (step - turn * libm::round(step / turn)).abs()
+            let carried = rotate_minimally(pair[0].t, pair[1].t, pair[0].r).unwrap_or(pair[0].r);
+            pair[1].angle_to(carried).abs()
         })
         .sum()
+}
+
+/// A small number in one digit, or plainly 0.
+pub fn small(number: f64) -> String {
+    if number == 0.0 { "0".to_owned() } else { format!("{number:.0e}") }
 }
 
 /// Two meshes as one.

@@ -8,7 +8,7 @@ use isochore_curve::{
     Curve, Frame, FrameMethod, Spine, TrigonometricCurve, TrigonometricTerm, TwistLaw, close_frames, closing_angle,
     rotation_minimizing_frames, total_angular_speed, total_squared_angular_speed,
 };
-use isochore_examples::{Stations, joined, save_figure, strap, swept_body};
+use isochore_examples::{Stations, joined, save_figure, small, strap, swept_body};
 use isochore_mesh::TriMesh;
 use isochore_picture::{Body, Camera, Options, Paint, Panel};
 
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let speed = total_angular_speed(&spine, &twisted.angles);
             let squared = total_squared_angular_speed(&spine, &twisted.angles);
             bodies.push((
-                format!("{turns} turns more: gap {gap:.1e}\nspeed {speed:.3}, squared {squared:.3}"),
+                format!("{turns} turns more: gap {}\nspeed {speed:.3}, squared {squared:.3}", small(gap)),
                 banded(&spine, &twisted.stations, true),
             ));
         }

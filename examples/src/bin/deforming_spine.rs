@@ -14,7 +14,7 @@ use isochore_picture::{Body, Camera, Options, Paint, Panel};
 const SEGMENTS: usize = 400;
 
 /// How far the two middle control points stand out of the plane, from picture to picture.
-const HEIGHTS: [f64; 3] = [0.3, 0.05, -0.05];
+const HEIGHTS: [f64; 3] = [0.1, 0.02, -0.02];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut bodies: Vec<(String, TriMesh, Vec<DVec3>)> = Vec::new();

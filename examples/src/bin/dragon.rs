@@ -8,7 +8,7 @@ use isochore_curve::{
     ArcLength, CubicSpline, Curve, EndCondition, Frame, FrameMethod, Parametrization, Spine, TwistLaw,
     meet_end_direction, rotation_minimizing_frames,
 };
-use isochore_examples::{Stations, save_figure, varying_body};
+use isochore_examples::{Stations, save_figure, small, varying_body};
 use isochore_mesh::TriMesh;
 use isochore_picture::{Body, Camera, Options, Paint, Panel};
 
@@ -50,9 +50,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         ),
         (
             format!(
-                "twisted by {:.3} rad in all: {:.0e} rad off",
+                "twisted by {:.3} rad in all: {} rad off",
                 twisted.angles[SEGMENTS].abs(),
-                off(&twisted.stations).max(1e-16)
+                small(off(&twisted.stations))
             ),
             dragon(&spine, &twisted.stations),
         ),
@@ -93,8 +93,10 @@ fn dragon(spine: &Spine, frames: &[Frame]) -> (TriMesh, Vec<DVec3>) {
     (mesh, colors)
 }
 
-/// Thin at the tail, thickest at two thirds.
+/// Thin at the tail, thickest at two thirds, rounded at the head.
 fn radius(row: usize) -> f64 {
     let share = row as f64 / SEGMENTS as f64;
-    0.012 + 0.24 * libm::sin(std::f64::consts::PI * share * (0.35 + 0.55 * share))
+    let to_end = ((share - 0.94) / 0.06).max(0.0);
+    let round = (1.0 - to_end * to_end).max(0.0004).sqrt();
+    (0.012 + 0.24 * libm::sin(std::f64::consts::PI * share * (0.35 + 0.45 * share))) * round
 }

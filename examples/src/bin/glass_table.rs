@@ -8,7 +8,7 @@ use isochore_curve::{
     FrameMethod, Spine, TrigonometricCurve, TrigonometricTerm, TwistConstraint, TwistLaw, closing_angle,
     meet_constraints, rotation_minimizing_frames,
 };
-use isochore_examples::{Stations, save_figure, strap, swept_body};
+use isochore_examples::{Stations, save_figure, small, strap, swept_body};
 use isochore_picture::{Body, Camera, Options, Panel};
 
 const SEGMENTS: usize = 600;
@@ -37,17 +37,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let bodies = [
         (
             format!(
-                "rotation-minimizing: up to {:.3} rad off at the six contacts,\nopen by {:.3} rad",
+                "rotation-minimizing: up to {:.3} rad off at the six contacts,\nclosed to {} rad by symmetry",
                 tilt(&frames),
-                closing_angle(&frames).abs()
+                small(closing_angle(&frames).abs())
             ),
             body(&frames),
         ),
         (
             format!(
-                "six conditions met: {:.0e} rad off at most,\nclosed to {:.0e} rad",
-                tilt(&twisted.stations).max(1e-16),
-                closing_angle(&twisted.stations).abs().max(1e-16)
+                "six conditions met: {} rad off at most,\nclosed to {} rad",
+                small(tilt(&twisted.stations)),
+                small(closing_angle(&twisted.stations).abs())
             ),
             body(&twisted.stations),
         ),

@@ -27,7 +27,7 @@ fn draw(name: &str, curve: &TrigonometricCurve, width: f64, view: DVec3) -> Resu
     let closed = close_frames(&spine, &minimizing.stations, TwistLaw::ArcLength, 0);
     let twist = closed.angles[SEGMENTS];
     // The Frenet frame turns by the torsion wherever it goes, forward and back.
-    let turning = total_turning(&frenet, &minimizing.stations);
+    let turning = total_turning(&frenet);
     let bodies = [
         (
             format!("{name}: closed rotation-minimizing frame\ntwist {twist:.4} rad in all, evenly"),

@@ -41,8 +41,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             Panel::new(caption.clone()).with(Body::new(mesh)).with(Body::polyline(&spine, 0.006, DVec3::splat(0.02)))
         })
         .collect();
-    let camera = Camera::from_direction(DVec3::new(0.3, -0.9, 1.1));
-    let options = Options { width: 2400, height: 640, ..Options::default() };
+    let camera = Camera::from_direction(DVec3::new(0.15, -0.6, 1.2));
+    let options = Options { width: 2400, height: 430, ..Options::default() };
     let all = sheets.iter().fold(TriMesh::default(), |all, (_, mesh)| joined(all, mesh));
     save_figure("moulding", &all, &panels, &camera, &options)
 }
@@ -64,7 +64,7 @@ fn curvature(patch: &RationalPatch) -> String {
     format!("Gaussian curvature {low:.1e} to {high:.1e}")
 }
 
-/// Both sides of the patch: a thin body would hide what the surface is.
+/// The patch as an open sheet.
 fn sheet(patch: &RationalPatch) -> TriMesh {
     let points: Vec<DVec3> = cells().map(|(u, v)| patch.jet(u, v).position).collect();
     GridMesh { points: &points, columns: CELLS.0 + 1, rows_close: false, columns_close: false }.mesh()

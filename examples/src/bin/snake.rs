@@ -13,7 +13,7 @@ use isochore_mesh::TriMesh;
 use isochore_picture::{Body, Camera, Options, Paint, Panel};
 
 const SEGMENTS: usize = 700;
-const COLUMNS: usize = 48;
+const COLUMNS: usize = 128;
 
 fn main() -> Result<(), Box<dyn Error>> {
     // A crawling snake with a raised head.
@@ -43,11 +43,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     inner[0] = parameters[1];
     inner[SEGMENTS] = parameters[SEGMENTS - 1];
     let frenet = frenet_frames(&curve, &inner)?;
-    let turning = total_turning(&frenet, &minimizing);
-    let bodies = [
-        ("rotation-minimizing: turns about the spine by 0 rad".to_owned(), snake(&spine, &minimizing)),
-        (format!("Frenet: turns about the spine by {turning:.2} rad"), snake(&spine, &frenet)),
-    ];
+    let bodies = [("rotation-minimizing", &minimizing), ("Frenet", &frenet)].map(|(name, frames)| {
+        let turning = total_turning(frames);
+        (format!("{name}: turns about the spine by {turning:.4} rad in all"), snake(&spine, frames))
+    });
     let panels: Vec<Panel> = bodies
         .iter()
         .map(|(caption, (mesh, colors))| {
