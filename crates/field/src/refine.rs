@@ -5,6 +5,7 @@
 
 use isochore_mesh::{Aabb, Cancelled, Monitor, sum_terms};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use crate::{
     Stroke,
@@ -77,11 +78,19 @@ const LEAST_LEFT: f64 = 1.0 / 3.0;
 /// Larger splits one edge a triangle and makes slivers; smaller splits flat directions of cylinders.
 const SIGNIFICANT: f64 = 0.5;
 
-/// Rounds of splitting triangles that cross. Each halves the edges there, and what crosses falls to a quarter of the area or
-/// less; more rounds pay with many triangles for sheets that profiles without a rigid core squeeze ever thinner.
-const MAX_UNTANGLING_ROUNDS: usize = 6;
+/// Rounds of splitting triangles that cross: each halves the edges there, so this many divide them by four thousand. It only
+/// ends what the other limits would keep going.
+const MAX_UNTANGLING_ROUNDS: usize = 12;
 
-/// Splitting goes on while it leaves at most this share of the area that crosses. Nearer to one it chases the error of the
+/// Splitting triangles that cross may add this share of the triangles there are. Larger spends most of the mesh on sheets that
+/// a profile without a rigid core squeezes ever thinner; smaller gives up on long creases.
+const UNTANGLING_GROWTH: f64 = 0.5;
+
+/// Triangles as long as this share of one that crosses, within the same triangle as read, are split with it. Larger lets folds
+/// wander along rows of slivers; smaller splits what is fine already.
+const AS_COARSE: f64 = 0.75;
+
+/// Splitting goes on while two rounds leave at most this share of the area that crosses. Nearer to one it chases the error of the
 /// time step; smaller gives up on sheets that take several rounds.
 const WORTHWHILE: f64 = 0.9;
 
@@ -196,22 +205,38 @@ pub(crate) fn untangle(
     monitor: &dyn Monitor,
 ) -> Result<Refinement, Cancelled> {
     let mut refinement = Refinement::default();
-    let mut last_area = f64::INFINITY;
+    let mut areas = [f64::INFINITY; 2];
+    let most = mesh.triangles.len() + (UNTANGLING_GROWTH * mesh.triangles.len() as f64) as usize;
     for round in 0..MAX_UNTANGLING_ROUNDS {
         monitor.check("untangle", round as f64 / MAX_UNTANGLING_ROUNDS as f64)?;
         let crossing = mesh.new_crossings(monitor)?;
         let area = mesh.image_area(&crossing);
-        if crossing.is_empty() || area > WORTHWHILE * last_area {
+        // Compared over two rounds: the first split of a sliver may only turn its fold over.
+        if crossing.is_empty() || area > WORTHWHILE * areas[0] {
             break;
         }
-        last_area = area;
-        refinement.evaluations +=
-            mesh.track(strokes, |_, index| crossing.binary_search(&(index as u32)).is_ok(), monitor)?;
+        areas = [areas[1], area];
+        // With all that is as coarse in the same triangles as read: at the end of a split row of slivers the next one folds.
+        let mut coarsest: FxHashMap<u32, f64> = FxHashMap::default();
+        for &index in &crossing {
+            let length = coarsest.entry(mesh.triangles[index as usize].parent).or_insert(0.0);
+            *length = length.max(mesh.longest_rest_edge(index as usize));
+        }
+        let is_wanted = |mesh: &Tessellation, index: usize| {
+            let coarsest = coarsest.get(&mesh.triangles[index].parent);
+            coarsest.is_some_and(|&length| mesh.longest_rest_edge(index) > AS_COARSE * length)
+        };
+        refinement.evaluations += mesh.track(strokes, is_wanted, monitor)?;
         let mut is_split = vec![false; mesh.midpoint_count()];
-        for midpoint in crossing.iter().filter_map(|&index| mesh.midpoints_of(index as usize)).flatten() {
-            is_split[midpoint as usize] = true;
+        for index in (0..mesh.triangles.len()).filter(|&index| is_wanted(mesh, index)) {
+            for midpoint in mesh.midpoints_of(index).into_iter().flatten() {
+                is_split[midpoint as usize] = true;
+            }
         }
         refinement.evaluations += add_longest_edges(mesh, strokes, &mut is_split, monitor)?;
+        if mesh.triangles_after(&is_split) > most {
+            break;
+        }
         if mesh.triangles_after(&is_split) > criteria.max_triangles {
             refinement.is_limited = true;
             break;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use isochore_mesh::{Cancelled, Monitor, SelfIntersectionError, SelfIntersections, SubTriangle, Subdivision, TriMesh};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::{Stroke, flow};
+use crate::{Stroke, facet_error::edge_lengths, flow};
 
 /// The edge's midpoint is not followed.
 const UNTRACKED: u32 = u32::MAX;
@@ -123,6 +123,11 @@ impl Tessellation {
     /// Corners of a triangle at rest.
     pub(crate) fn rest_of(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].vertices.map(|vertex| self.rest[vertex as usize])
+    }
+
+    /// Length at rest of the longest edge of a triangle.
+    pub(crate) fn longest_rest_edge(&self, triangle: usize) -> f64 {
+        edge_lengths(&self.rest_of(triangle)).into_iter().fold(0.0, f64::max)
     }
 
     /// The triangle's image with its midpoints, if all are followed.
