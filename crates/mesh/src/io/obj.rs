@@ -1,10 +1,13 @@
 //! Wavefront OBJ.
 //!
-//! Read and written here rather than by a library: those at hand number vertices anew in the order of their use, drop
-//! the unused and name no line in their errors, while vertex order is what masks and blend shapes go by.
+//! Read by the library `tobj`, which gets the statements that bear on the surface. What it does not keep is seen to
+//! here: the order of the vertices and those that no face uses, colors of some vertices only, materials without a
+//! library, corners without attributes, and the line of an error.
 
-mod parser;
+mod fault;
+mod reader;
+mod statements;
 mod writer;
 
-pub(super) use parser::parse;
+pub(super) use reader::parse;
 pub(super) use writer::write;

@@ -1,11 +1,12 @@
 //! STL, both kinds.
 //!
-//! Read here rather than by a library for three files that are common: binary ones whose header begins with `solid`,
-//! text ones with several solids, and broken ones, whose error should name the line.
+//! The library `stl_io` reads binary files. Text files are read here, because it rounds them to single precision, stops
+//! after the first solid, refuses solids without a name and facets whose normal is not a number, and its errors name
+//! no line.
 
-use std::io::{self, Write};
+use std::io::{self, Cursor, Write};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::text::{at_line, numbered_lines, read_numbers};
 use super::{LineProblem, ParseError};
@@ -24,12 +25,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let expected = count.map(|count| HEADER + RECORD * count);
     // The size decides, because the header of a binary file may say anything.
     let positions = if expected == Some(bytes.len()) {
-        parse_binary(&bytes[HEADER..])
+        parse_binary(bytes)?
     } else if bytes.trim_ascii_start().starts_with(b"solid") {
         parse_text(bytes)?
     } else {
         return match expected {
-            Some(expected) if expected < bytes.len() => Ok(soup(parse_binary(&bytes[HEADER..expected]))),
+            Some(expected) if expected < bytes.len() => Ok(soup(parse_binary(bytes)?)),
             Some(expected) => Err(ParseError::Malformed(format!(
                 "the file is truncated: {expected} bytes announced, {} found",
                 bytes.len()
@@ -40,10 +41,17 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     Ok(soup(positions))
 }
 
-fn parse_binary(records: &[u8]) -> Vec<DVec3> {
-    let coordinate = |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
-    let corner = |bytes: &[u8]| DVec3::new(coordinate(&bytes[0..]), coordinate(&bytes[4..]), coordinate(&bytes[8..]));
-    records.chunks_exact(RECORD).flat_map(|record| record[12..48].chunks_exact(12).map(corner)).collect()
+fn parse_binary(bytes: &[u8]) -> Result<Vec<DVec3>, ParseError> {
+    let mut bytes = bytes.to_vec();
+    // The library takes every file that begins with `solid` for text.
+    bytes[0] = 0;
+    let read = |error: io::Error| ParseError::Malformed(error.to_string());
+    let corners = |triangle: stl_io::Triangle| triangle.vertices.map(|corner| Vec3::from_array(corner.0).as_dvec3());
+    let triangles: Result<Vec<_>, _> = stl_io::create_stl_reader(&mut Cursor::new(bytes))
+        .map_err(read)?
+        .map(|triangle| triangle.map(corners))
+        .collect();
+    Ok(triangles.map_err(read)?.concat())
 }
 
 /// Corners of all facets of all solids. Only `vertex` and the ends of loops matter.

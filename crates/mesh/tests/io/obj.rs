@@ -114,6 +114,56 @@ fn corners_on_a_line_keep_their_edges() {
     assert_eq!(mesh.check().boundary_edges, [[0, 1], [0, 4], [1, 2], [2, 3], [3, 4]]);
 }
 
+/// Polygons that cross themselves, go back on themselves or have no area: none may leave a gap to its neighbors.
+#[test]
+fn broken_polygons_keep_their_edges() {
+    let crossed = "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nv -1 1 0\n";
+    let folded = "v 0 0 0\nv 2 0 0\nv 1 0 0\nv 2 1 0\nv 0 1 0\n";
+    let straight = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 4 0 0\n";
+    for vertices in [crossed, folded, straight] {
+        let mesh = parse_obj(&format!("{vertices}f 1 2 3 4 5\n"));
+        assert_eq!(mesh.triangles.len(), 3);
+        assert_eq!(mesh.check().boundary_edges, [[0, 1], [0, 4], [1, 2], [2, 3], [3, 4]]);
+    }
+}
+
+/// What the library would change, or mistake for faces.
+#[test]
+fn order_and_attributes_survive_the_library() {
+    let mesh = parse_obj(
+        "v 9 9 9\nv 0 0 0 0.5 0 0 0.25\nv 1 0 0\nv 0 1 0\nvt 0.5\nvn 1 0 0\no a\nl 2 3 4\np 1\nf 4/1/1 2/1/1 3/1/1\n\
+         g b\nusemtl two  words\nv 0 0 1\nf -1 -2 -3 # last\nv 8 8 8\nf 2//1 3//1 5//1\n",
+    );
+    let x: Vec<f64> = mesh.positions.iter().map(|position| position.x).collect();
+    assert_eq!(x, [9.0, 0.0, 1.0, 0.0, 0.0, 8.0]);
+    assert_eq!(mesh.triangles, [[3, 1, 2], [4, 3, 2], [1, 2, 4]]);
+    assert_eq!(mesh.triangle_materials, [0, 1, 1]);
+    assert_eq!(mesh.materials, ["", "two  words"]);
+    let uvs: Vec<f64> = mesh.corner.uvs[0].iter().map(|corners| corners[1].x).collect();
+    assert_eq!(uvs, [0.5, 0.0, 0.0]);
+    let normals: Vec<f64> = mesh.corner.normals.iter().map(|corners| corners[0].x).collect();
+    assert_eq!((normals[0], normals[2]), (1.0, 1.0));
+    // The second face has the normal of its plane, which is rounded once or twice.
+    assert!((normals[1] + (1.0_f64 / 3.0).sqrt()).abs() < 2.0 * f64::EPSILON);
+    let colors: Vec<[f64; 4]> = mesh.vertex.colors.iter().map(|color| color.to_array()).collect();
+    assert_eq!(colors[..3], [[1.0; 4], [0.5, 0.0, 0.0, 0.25], [1.0; 4]]);
+    assert_eq!(colors.len(), 6);
+}
+
+/// Indices that the library takes for none, or computes with before it checks them.
+#[test]
+fn indices_that_the_library_mistakes_are_errors() {
+    let error = |corner: &str| {
+        let start = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n";
+        parse(Format::Obj, &format!("{start}f {corner} 2/1/1 3/1/1\n")).unwrap_err().to_string()
+    };
+    assert_eq!(error("1/0/1"), "line 6: texture coordinate 0 is out of range: there are 1");
+    assert_eq!(error("1/-2/1"), "line 6: texture coordinate -2 is out of range: there are 1");
+    assert_eq!(error("1/1/-2"), "line 6: normal -2 is out of range: there are 1");
+    let overflowing = "1/1/6148914691236517206";
+    assert_eq!(error(overflowing), format!("line 6: '{overflowing}' is not a face corner (v, v/vt, v//vn or v/vt/vn)"));
+}
+
 #[test]
 fn errors_name_the_line() {
     let error = |text: &str| parse(Format::Obj, text).unwrap_err().to_string();

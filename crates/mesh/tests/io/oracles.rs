@@ -1,4 +1,4 @@
-//! Our readers against the libraries for the same formats.
+//! What is read against the libraries for the same formats, asked directly.
 
 use std::io::Cursor;
 
