@@ -19,6 +19,10 @@ const QUERY_DEPTH: u32 = 6;
 /// Bracketed Newton steps at most: enough for bisection alone to reach rounding.
 const STEPS: usize = 60;
 
+/// A Newton step this small, as a share of the piece, is the last: what is missing after it is its square. Larger: digits are
+/// lost. Smaller: one more step that changes nothing.
+const LAST_STEP: f64 = 1e-8;
+
 /// A point of a curve at which the distance to the query is a local minimum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveProjection {
@@ -35,6 +39,8 @@ pub struct CurveProjection {
 pub struct ClosestPoint<C> {
     curve: C,
     pieces: Vec<Piece>,
+    /// Center and radius of each piece, together in memory, since every query runs through all of them.
+    spheres: Vec<(DVec3, f64)>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -45,6 +51,13 @@ struct Piece {
     center: DVec3,
     /// Longest way along the curve from the center to an end: no point of the piece is farther.
     radius: f64,
+    /// Position at the start, and the vector from there to the end.
+    chord: [DVec3; 2],
+    /// No point of the piece is farther from its chord: its inscribed triangle with the farthest point turns no more than
+    /// the piece itself, so that length · turning / 4 is enough.
+    height: f64,
+    /// Queries nearer than this to every point of the piece have one minimum on it at most.
+    calm_distance: f64,
     is_first: bool,
     is_last: bool,
     /// Where the slope at the end is taken: at the start of the domain for the last piece of a closed curve, so that the two
@@ -52,10 +65,25 @@ struct Piece {
     end_of_slope: f64,
 }
 
-/// Half the derivative of the squared distance by the parameter, and its own derivative.
+impl Piece {
+    /// Distance from `query` to the chord, and the parameter at the share of the chord that is nearest.
+    fn chord_distance(&self, query: DVec3) -> (f64, f64) {
+        let [start, chord] = self.chord;
+        let offset = query - start;
+        let squared = chord.length_squared();
+        let share = if squared > 0.0 { (offset.dot(chord) / squared).clamp(0.0, 1.0) } else { 0.5 };
+        ((offset - chord * share).length(), self.start + (self.end - self.start) * share)
+    }
+}
+
+/// Half the derivative of the squared distance by the parameter.
 struct Slope {
     value: f64,
+    /// Its own derivative, for Newton's method.
     derivative: f64,
+    /// A positive multiple of the derivative that it has by arc length, 1 − κ n · (query − x): unlike the derivative by the
+    /// parameter, it does not change where the parameter runs faster. Where its sign is constant there is one root at most.
+    rise: f64,
 }
 
 impl<C: Curve> ClosestPoint<C> {
@@ -71,7 +99,8 @@ impl<C: Curve> ClosestPoint<C> {
         if curve.is_closed() {
             pieces[last].end_of_slope = pieces[0].start;
         }
-        Self { curve, pieces }
+        let spheres = pieces.iter().map(|piece| (piece.center, piece.radius)).collect();
+        Self { curve, pieces, spheres }
     }
 
     /// The curve.
@@ -81,29 +110,44 @@ impl<C: Curve> ClosestPoint<C> {
 
     /// The point of the curve nearest to `query`; of several at the same distance, the one with the smallest parameter.
     pub fn closest(&self, query: DVec3) -> CurveProjection {
-        let mut best = CurveProjection { parameter: 0.0, position: DVec3::ZERO, distance: f64::INFINITY };
+        let mut squared = f64::INFINITY;
         let mut nearest = 0;
-        for (index, piece) in self.pieces.iter().enumerate() {
-            let distance = piece.center.distance(query);
-            if distance < best.distance {
+        for (index, (center, _)) in self.spheres.iter().enumerate() {
+            let distance = center.distance_squared(query);
+            if distance < squared {
+                squared = distance;
                 nearest = index;
-                best = CurveProjection { parameter: 0.5 * (piece.start + piece.end), position: piece.center, distance };
             }
         }
-        // The most promising piece first: it makes the bound that drops the others. Its own turn comes again for nothing.
-        let order = std::iter::once(nearest).chain((0..self.pieces.len()).filter(|&index| index != nearest));
-        for index in order {
-            let piece = &self.pieces[index];
-            if piece.center.distance(query) - piece.radius <= best.distance {
-                self.minima(piece, query, &mut |found| {
-                    let is_tie = found.distance == best.distance && found.parameter < best.parameter;
-                    if found.distance < best.distance || is_tie {
-                        best = found;
-                    }
-                });
+        let piece = &self.pieces[nearest];
+        let mut best = CurveProjection {
+            parameter: 0.5 * (piece.start + piece.end),
+            position: piece.center,
+            distance: squared.sqrt(),
+        };
+        // The most promising piece first: it makes the bound that drops the others.
+        self.improve(piece, query, &mut best);
+        for (index, (center, radius)) in self.spheres.iter().enumerate() {
+            let reach = best.distance + radius;
+            if index != nearest && center.distance_squared(query) <= reach * reach {
+                self.improve(&self.pieces[index], query, &mut best);
             }
         }
         best
+    }
+
+    /// Takes the minima of a piece into account, unless its chord says that they are farther than `best`.
+    fn improve(&self, piece: &Piece, query: DVec3, best: &mut CurveProjection) {
+        let (chord_distance, guess) = piece.chord_distance(query);
+        if chord_distance - piece.height > best.distance {
+            return;
+        }
+        self.minima(piece, query, guess, &mut |found| {
+            let is_tie = found.distance == best.distance && found.parameter < best.parameter;
+            if found.distance < best.distance || is_tie {
+                *best = found;
+            }
+        });
     }
 
     /// The nearest points for many queries, in their order.
@@ -118,8 +162,9 @@ impl<C: Curve> ClosestPoint<C> {
     pub fn branches(&self, query: DVec3, within: f64) -> Vec<CurveProjection> {
         let mut found = Vec::new();
         for piece in &self.pieces {
-            if piece.center.distance(query) - piece.radius <= within {
-                self.minima(piece, query, &mut |branch| {
+            let (chord_distance, guess) = piece.chord_distance(query);
+            if chord_distance - piece.height <= within {
+                self.minima(piece, query, guess, &mut |branch| {
                     if branch.distance <= within {
                         found.push(branch);
                     }
@@ -138,11 +183,18 @@ impl<C: Curve> ClosestPoint<C> {
     fn slope(&self, parameter: f64, query: DVec3) -> Slope {
         let jet = self.curve.jet(parameter);
         let offset = jet.position - query;
-        Slope { value: offset.dot(jet.first), derivative: jet.first.length_squared() + offset.dot(jet.second) }
+        let squared_speed = jet.first.length_squared();
+        let value = offset.dot(jet.first);
+        let bend = offset.dot(jet.second);
+        Slope {
+            value,
+            derivative: squared_speed + bend,
+            rise: squared_speed * (squared_speed + bend) - value * jet.second.dot(jet.first),
+        }
     }
 
     /// Reports the local minima of a piece: roots with rising slope in (start, end], and the ends of an open curve.
-    fn minima(&self, piece: &Piece, query: DVec3, report: &mut impl FnMut(CurveProjection)) {
+    fn minima(&self, piece: &Piece, query: DVec3, guess: f64, report: &mut impl FnMut(CurveProjection)) {
         let start = self.slope(piece.start, query);
         let end = self.slope(piece.end_of_slope, query);
         if piece.is_first && start.value >= 0.0 {
@@ -150,6 +202,12 @@ impl<C: Curve> ClosestPoint<C> {
         }
         if piece.is_last && end.value < 0.0 {
             report(self.project(piece.end, query));
+        }
+        if piece.center.distance(query) + piece.radius <= piece.calm_distance {
+            if start.value < 0.0 && end.value >= 0.0 {
+                report(self.project(self.root(piece.start, piece.end, guess, query), query));
+            }
+            return;
         }
         self.roots((piece.start, &start), (piece.end, &end), query, QUERY_DEPTH, report);
     }
@@ -164,11 +222,11 @@ impl<C: Curve> ClosestPoint<C> {
     ) {
         let middle = 0.5 * (low + high);
         let at_middle = self.slope(middle, query);
-        let is_rising = at_low.derivative > 0.0 && at_middle.derivative > 0.0 && at_high.derivative > 0.0;
-        let is_falling = at_low.derivative < 0.0 && at_middle.derivative < 0.0 && at_high.derivative < 0.0;
+        let is_rising = at_low.rise > 0.0 && at_middle.rise > 0.0 && at_high.rise > 0.0;
+        let is_falling = at_low.rise < 0.0 && at_middle.rise < 0.0 && at_high.rise < 0.0;
         if depth == 0 || is_rising {
             if at_low.value < 0.0 && at_high.value >= 0.0 {
-                report(self.project(self.root(low, high, query), query));
+                report(self.project(self.root(low, high, middle, query), query));
             }
         } else if !is_falling {
             self.roots((low, at_low), (middle, &at_middle), query, depth - 1, report);
@@ -177,9 +235,9 @@ impl<C: Curve> ClosestPoint<C> {
     }
 
     /// The root of the slope in (low, high], where it is negative at `low` and not at `high`.
-    fn root(&self, mut low: f64, mut high: f64, query: DVec3) -> f64 {
+    fn root(&self, mut low: f64, mut high: f64, guess: f64, query: DVec3) -> f64 {
         let size = high - low;
-        let mut parameter = 0.5 * (low + high);
+        let mut parameter = guess;
         for _ in 0..STEPS {
             let slope = self.slope(parameter, query);
             if slope.value < 0.0 {
@@ -188,10 +246,10 @@ impl<C: Curve> ClosestPoint<C> {
                 high = parameter;
             }
             let step = -slope.value / slope.derivative;
-            if step.abs() <= f64::EPSILON * (parameter.abs() + size) {
-                break;
-            }
             let next = parameter + step;
+            if step.abs() <= LAST_STEP * size {
+                return next.clamp(low, high);
+            }
             parameter = if next > low && next < high { next } else { 0.5 * (low + high) };
         }
         parameter
@@ -209,13 +267,22 @@ fn cut(curve: &impl Curve, start: f64, end: f64, depth: u32, pieces: &mut Vec<Pi
         return;
     }
     let speed = &mut |u| curve.jet(u).speed();
-    // The margin covers the error of the quadrature on so small a turn, and rounding.
-    let radius = gauss(speed, start, middle).max(gauss(speed, middle, end)) * (1.0 + 1e-6);
+    // The margins cover the errors of the quadratures on so small a turn, and rounding.
+    let (left, right) = (gauss(speed, start, middle), gauss(speed, middle, end));
+    let radius = left.max(right) * (1.0 + 1e-6);
+    let height = (0.25 * turning * (1.0 + 1e-3) * (left + right)).min(2.0 * radius);
+    // Nearer than the center of curvature there is no second minimum. The curvature is sampled, hence the factor.
+    let samples = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| curve.jet(start + (end - start) * share));
+    let curvature = samples.iter().map(|jet| jet.curvature()).fold(0.0, f64::max);
+    let (first, last) = (curve.position(start), curve.position(end));
     pieces.push(Piece {
         start,
         end,
         center: curve.position(middle),
         radius,
+        chord: [first, last - first],
+        height,
+        calm_distance: 0.7 / curvature,
         is_first: false,
         is_last: false,
         end_of_slope: end,

@@ -23,11 +23,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         for height in HEIGHTS {
             let curve = Bezier::s_curve(height);
             let spine = Spine::sample(&curve, SEGMENTS)?;
+            let frenet = frenet_frames(&curve, &uniform_parameters(&curve, SEGMENTS))?;
+            // Both start with the Frenet normal.
             let frames = if is_frenet {
-                frenet_frames(&curve, &uniform_parameters(&curve, SEGMENTS))?
+                frenet
             } else {
-                rotation_minimizing_frames(&spine, DVec3::Z, FrameMethod::DoubleReflection, Default::default())?
-                    .stations
+                let method = FrameMethod::DoubleReflection;
+                rotation_minimizing_frames(&spine, frenet[0].r, method, Default::default())?.stations
             };
             let name = if is_frenet { "Frenet" } else { "rotation-minimizing" };
             let moved = before.as_ref().map_or("start".to_owned(), |before| {
