@@ -40,13 +40,13 @@ pub enum SpineError {
         /// Tangents given.
         tangents: usize,
     },
-    /// A coordinate is NaN, infinite or beyond 1e100.
+    /// A coordinate is NaN, infinite or beyond 1e50.
     #[error("point {index} has a coordinate that is not a finite number of ordinary size")]
     PointNotFinite {
         /// The point.
         index: usize,
     },
-    /// A tangent is NaN, infinite or beyond 1e100.
+    /// A tangent is NaN, infinite or beyond 1e50.
     #[error("tangent {index} has a coordinate that is not a finite number of ordinary size")]
     TangentNotFinite {
         /// The tangent.

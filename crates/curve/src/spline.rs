@@ -36,7 +36,7 @@ pub enum SplineError {
         /// Two for an open spline, three for a closed one.
         needed: usize,
     },
-    /// A coordinate is NaN, infinite or beyond 1e100.
+    /// A coordinate is NaN, infinite or beyond 1e50.
     #[error("point {index} has a coordinate that is not a finite number of ordinary size")]
     NotFinite {
         /// The point, counted from zero.
@@ -52,9 +52,9 @@ pub enum SplineError {
     },
 }
 
-/// Coordinates beyond this are refused. Larger: squared lengths overflow in later computations. Smaller: nothing real is lost
-/// until about 1e30.
-pub(crate) const COORDINATE_LIMIT: f64 = 1e100;
+/// Coordinates beyond this are refused. Larger: sixth powers of lengths, as in the torsion, overflow. Smaller: nothing real is
+/// lost until about 1e30.
+pub(crate) const COORDINATE_LIMIT: f64 = 1e50;
 
 /// A cubic spline with continuous second derivative through given points, open or closed.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,9 +3,9 @@
 
 use glam::DVec3;
 use isochore_curve::{
-    Bezier, Curve, DegenerateSegment, Frame, FrameError, FrameMethod, FunctionCurve, Inversion, Spine,
-    TrigonometricCurve, exact_frames, orthogonal_reference, rotation_minimizing_frames, runge_kutta_frames,
-    uniform_parameters,
+    Bezier, Curve, DegenerateSegment, Frame, FrameError, FrameMethod, FunctionCurve, Inversion, MoebiusSegment,
+    PhCubic, Spine, Tilt, TrigonometricCurve, exact_frames, orthogonal_reference, reflect_twice, rotate_minimally,
+    rotation_minimizing_frames, runge_kutta_frames, uniform_parameters,
 };
 use proptest::prelude::*;
 
@@ -178,6 +178,20 @@ fn s_curve_errors_shrink_with_its_height() {
     assert!(last.r.distance(DVec3::new(0.0, -0.024223273733433, 0.99970657345525)) < 1e-14, "{}", last.r);
 }
 
+/// The smallest rotation between tangents is double reflection along their sum.
+#[test]
+fn rotation_is_double_reflection_along_the_sum_of_the_tangents() {
+    let spine = knot_samples(64);
+    let mut r = DVec3::X.reject_from_normalized(spine.tangent(0)).normalize();
+    for i in 0..64 {
+        let (start, end) = (spine.tangent(i), spine.tangent(i + 1));
+        let (rotated, reflected) = (rotate_minimally(start, end, r), reflect_twice(start + end, start, end, r));
+        // A dozen roundings of numbers of size one.
+        assert!(rotated.unwrap().distance(reflected.unwrap()) < 2e-15);
+        r = rotated.unwrap();
+    }
+}
+
 #[test]
 fn degenerate_segments_are_refused_or_rotated() {
     let frames = |spine: &Spine, degenerate| {
@@ -245,6 +259,33 @@ proptest! {
                 prop_assert!((frame.r.length() - 1.0).abs() < 1e-12);
                 prop_assert!(frame.r.dot(frame.t).abs() < 1e-10);
                 prop_assert!((frame.r.cross(frame.s) - frame.t).length() < 1e-10);
+            }
+        }
+    }
+
+    /// Hermite data of any size and shape have finite curves and frames, or an error.
+    #[test]
+    fn rational_segments_are_finite_or_refused(
+        coordinates in prop::collection::vec(-1.0..1.0f64, 12),
+        exponent in -45..45i32,
+        flat in prop::sample::select(vec![1.0, 1e-3, 1e-8, 1e-15, 0.0]),
+    ) {
+        let vectors: Vec<DVec3> = coordinates.chunks(3).map(|c| DVec3::new(c[0], c[1], c[2] * flat)).collect();
+        let scale = 10f64.powi(exponent);
+        let (start, end) = (vectors[0] * scale, vectors[1] * scale);
+        let parameters = [0.0, 0.3, 1.0];
+        let is_good = |frames: &[Frame]| frames.iter().all(|f| f.r.is_finite() && f.t.is_finite() && f.s.is_finite());
+        if let Ok(cubic) = PhCubic::hermite(start, end, vectors[2], vectors[3]) {
+            prop_assert!(cubic.control_points().iter().all(|point| point.is_finite()));
+            prop_assert!(cubic.rotation_to(1.0).is_finite() && cubic.length() > 0.0);
+            if let Ok(frames) = cubic.exact_frames(&parameters, DVec3::Z) {
+                prop_assert!(is_good(&frames), "{frames:?}");
+            }
+        }
+        if let Ok(segment) = MoebiusSegment::hermite(start, end, vectors[2], vectors[3], Tilt::WhenNeeded) {
+            prop_assert!(parameters.iter().all(|&u| segment.position(u).is_finite()));
+            if let Ok(frames) = segment.frames(&parameters, DVec3::Z) {
+                prop_assert!(is_good(&frames), "{frames:?}");
             }
         }
     }

@@ -12,7 +12,7 @@ use crate::spline::COORDINATE_LIMIT;
 /// Why end points and tangents have no Pythagorean-hodograph cubic.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PhCubicError {
-    /// A coordinate is NaN, infinite or beyond 1e100.
+    /// A coordinate is NaN, infinite or beyond 1e50.
     #[error("an end point or tangent has a coordinate that is not a finite number of ordinary size")]
     NotFinite,
     /// The end points coincide.
