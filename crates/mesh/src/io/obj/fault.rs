@@ -1,6 +1,6 @@
 //! Which line of a broken OBJ file is at fault.
 
-use super::statements::{split_statements, without_comment};
+use super::statements::split_statements;
 use crate::io::text::{Words, at_line, parse_integer, read_numbers, text};
 use crate::io::{LineProblem, ParseError};
 
@@ -10,15 +10,15 @@ const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 /// Looks for the first line that breaks the format, in a file with `totals` vertices, texture coordinates and normals.
 pub(super) fn check_lines(bytes: &[u8], totals: [usize; 3]) -> Result<(), ParseError> {
     let mut counts = [0; 3];
-    for (line, statement) in split_statements(bytes) {
-        check_statement(statement, &mut counts, totals).map_err(at_line(line))?;
+    for statement in split_statements(bytes) {
+        check_statement(&statement.plain(), &mut counts, totals).map_err(at_line(statement.line))?;
     }
     Ok(())
 }
 
 /// `counts` are those of the statements before, which negative indices count back from.
 fn check_statement(statement: &[u8], counts: &mut [usize; 3], totals: [usize; 3]) -> Result<(), LineProblem> {
-    let mut words = Words { rest: without_comment(statement) };
+    let mut words = Words { rest: statement };
     let kind = match words.next().unwrap_or_default() {
         b"v" => {
             // Seven are a position with color and alpha.

@@ -34,7 +34,8 @@ pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
 /// All faces as one mesh of the library's, after a first face of all vertices.
 fn load(statements: &Statements) -> Result<tobj::Mesh, tobj::LoadError> {
     // The library numbers vertices in the order of their use: after this face, in that of the file.
-    let mut all_vertices = String::from("f");
+    let mut all_vertices = String::with_capacity(8 * statements.counts[0]);
+    all_vertices.push('f');
     for vertex in 1..=statements.counts[0] {
         write!(all_vertices, " {vertex}").expect("a string takes all that is written");
     }

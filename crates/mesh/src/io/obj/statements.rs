@@ -1,5 +1,7 @@
 //! The statements of an OBJ file, made ready for the library.
 
+use std::borrow::Cow;
+
 use glam::DVec4;
 use rustc_hash::FxHashMap;
 
@@ -36,8 +38,8 @@ pub(super) struct FaceRun {
 impl Statements {
     pub(super) fn of(bytes: &[u8]) -> Self {
         let mut statements = Self { lines: Vec::with_capacity(bytes.len()), ..Self::default() };
-        for (_, statement) in split_statements(bytes) {
-            statements.push(statement);
+        for statement in split_statements(bytes) {
+            statements.push(&statement);
         }
         if !statements.colors.is_empty() {
             statements.colors.resize(statements.counts[0], DVec4::ONE);
@@ -45,20 +47,20 @@ impl Statements {
         statements
     }
 
-    fn push(&mut self, statement: &[u8]) {
-        let mut words = Words { rest: statement };
+    fn push(&mut self, statement: &Statement<'_>) {
+        let mut words = Words { rest: statement.bytes };
         match words.next().unwrap_or_default() {
-            b"v" => self.push_vertex(without_comment(statement)),
+            b"v" => self.push_vertex(&statement.plain()),
             b"vt" => {
                 self.counts[1] += 1;
                 // The library wants two numbers where one will do, and passes over a third.
-                self.push_line(without_comment(statement), b" 0\n");
+                self.push_line(&statement.plain(), b" 0\n");
             }
             b"vn" => {
                 self.counts[2] += 1;
-                self.push_line(without_comment(statement), b"\n");
+                self.push_line(&statement.plain(), b"\n");
             }
-            b"f" => self.push_face(without_comment(statement)),
+            b"f" => self.push_face(&statement.plain()),
             b"usemtl" => self.use_material(&text(words.rest)),
             b"mtllib" => self.libraries.push(text(words.rest)),
             _ => {}
@@ -89,13 +91,13 @@ impl Statements {
         }
         self.push_line(statement, b"\n");
         let (mut has_uvs, mut has_normals) = (false, false);
-        if memchr::memchr(b'/', statement).is_some() {
-            let mut corners = Words { rest: statement }.skip(1).peekable();
+        if statement.contains(&b'/') {
             // All corners of a face have the same attributes.
-            let mut fields = corners.peek().copied().unwrap_or_default().split(|&byte| byte == b'/').skip(1);
+            let corner = Words { rest: statement }.nth(1).unwrap_or_default();
+            let mut fields = corner.split(|&byte| byte == b'/').skip(1);
             let mut has_next = || fields.next().is_some_and(|field| !field.is_empty());
             (has_uvs, has_normals) = (has_next(), has_next());
-            self.is_suspect |= corners.any(|corner| corner.split(|&byte| byte == b'/').any(is_unusual_index));
+            self.is_suspect |= statement.split(|&byte| byte == b'/').skip(1).any(begins_with_unusual_index);
         }
         let material = self.material;
         match self.runs.last_mut() {
@@ -106,15 +108,8 @@ impl Statements {
         }
     }
 
-    /// Appends a line. Where a backslash joins lines, spaces do so as well.
     fn push_line(&mut self, statement: &[u8], end: &[u8]) {
-        match memchr::memchr(b'\\', statement) {
-            None => self.lines.extend_from_slice(statement),
-            Some(_) => {
-                let joined = statement.iter().map(|&byte| if matches!(byte, b'\\' | b'\n') { b' ' } else { byte });
-                self.lines.extend(joined);
-            }
-        }
+        self.lines.extend_from_slice(statement);
         self.lines.extend_from_slice(end);
     }
 
@@ -133,18 +128,18 @@ impl Statements {
 
 /// True for indices of attributes on which the library's arithmetic may overflow (negative or very long ones), and for
 /// zero, which it takes for none. Those of vertices it handles well.
-fn is_unusual_index(field: &[u8]) -> bool {
-    field.len() > 10 || field.first().is_some_and(|first| !(b'1'..=b'9').contains(first))
-}
-
-pub(super) fn without_comment(statement: &[u8]) -> &[u8] {
-    memchr::memchr(b'#', statement).map_or(statement, |comment| &statement[..comment])
+fn begins_with_unusual_index(text: &[u8]) -> bool {
+    match text.first() {
+        Some(b'1'..=b'9') => text.iter().take_while(|byte| byte.is_ascii_digit()).count() > 10,
+        Some(byte) => !byte.is_ascii_whitespace(),
+        None => false,
+    }
 }
 
 /// What comes up to the third number of a vertex, and what comes after it.
 fn split_vertex(statement: &[u8]) -> (&[u8], &[u8]) {
     // The usual vertex has three spaces, and needs no closer look at its words.
-    if statement.iter().filter(|&&byte| byte <= b' ' || byte == b'\\').count() <= 3 {
+    if statement.iter().filter(|&&byte| byte <= b' ').count() <= 3 {
         return (statement, &[]);
     }
     let mut words = Words { rest: statement };
@@ -152,18 +147,44 @@ fn split_vertex(statement: &[u8]) -> (&[u8], &[u8]) {
     statement.split_at(statement.len() - words.rest.len())
 }
 
-/// Statements with the number, from one, of the line on which each begins. A backslash at the end joins lines.
-pub(super) fn split_statements(bytes: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
-    let (mut rest, mut line) = (bytes, 1);
+/// A statement as it stands in the file.
+pub(super) struct Statement<'a> {
+    /// The line on which it begins, counted from one.
+    pub(super) line: usize,
+    pub(super) bytes: &'a [u8],
+    /// True where there may be a comment or a backslash in it.
+    is_marked: bool,
+}
+
+impl<'a> Statement<'a> {
+    /// The statement on one line and without its comment.
+    pub(super) fn plain(&self) -> Cow<'a, [u8]> {
+        if !self.is_marked {
+            return Cow::Borrowed(self.bytes);
+        }
+        let end = memchr::memchr(b'#', self.bytes).unwrap_or(self.bytes.len());
+        let joined = |&byte: &u8| if matches!(byte, b'\\' | b'\n') { b' ' } else { byte };
+        Cow::Owned(self.bytes[..end].iter().map(joined).collect())
+    }
+}
+
+/// The statements of a file. A backslash at the end joins lines.
+pub(super) fn split_statements(bytes: &[u8]) -> impl Iterator<Item = Statement<'_>> {
+    let next_mark = |from: usize| memchr::memchr2(b'#', b'\\', &bytes[from..]).map_or(bytes.len(), |at| from + at);
+    let (mut start, mut line, mut mark) = (0, 1, next_mark(0));
     std::iter::from_fn(move || {
-        let (first_line, mut end) = (line, 0);
-        while end < rest.len() {
+        let (first_line, mut end) = (line, start);
+        while end < bytes.len() {
             line += 1;
-            end = memchr::memchr(b'\n', &rest[end..]).map_or(rest.len(), |offset| end + offset + 1);
-            let statement = rest[..end].trim_ascii_end();
-            if statement.last() != Some(&b'\\') || end == rest.len() {
-                rest = &rest[end..];
-                return Some((first_line, statement));
+            end = memchr::memchr(b'\n', &bytes[end..]).map_or(bytes.len(), |offset| end + offset + 1);
+            let statement = bytes[start..end].trim_ascii_end();
+            let is_marked = mark < end;
+            if !is_marked || statement.last() != Some(&b'\\') || end == bytes.len() {
+                if is_marked {
+                    mark = next_mark(end);
+                }
+                start = end;
+                return Some(Statement { line: first_line, bytes: statement, is_marked });
             }
         }
         None
