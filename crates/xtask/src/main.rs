@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod arrows;
 mod data;
+mod gallery;
 mod oracle;
 mod shell;
 mod test;
@@ -13,7 +14,7 @@ use shell::TaskResult;
 
 type Task = (&'static str, &'static str, fn() -> TaskResult);
 
-const TASKS: [Task; 3] = [
+const TASKS: [Task; 4] = [
     ("test", "formatting, lints, all tests, then the oracle: what must pass before a change goes in", test::run_all),
     (
         "oracle",
@@ -21,6 +22,7 @@ const TASKS: [Task; 3] = [
         oracle::run_judges,
     ),
     ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
+    ("gallery", "run all examples and leave their figures in target/gallery", gallery::draw_all),
 ];
 
 fn main() -> ExitCode {
