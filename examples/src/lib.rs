@@ -33,8 +33,8 @@ pub fn save_figure(
     Ok(())
 }
 
-/// The body that a closed `profile`, counter-clockwise, sweeps along `stations`: capped, or closed where `closes` says that the last
-/// station is the first.
+/// The body that a closed `profile`, counter-clockwise, sweeps along `stations`: capped, or closed where `closes` says
+/// that the last station is the first.
 pub fn swept_body(stations: &[(DVec3, Frame)], profile: &[DVec2], closes: bool) -> TriMesh {
     let rows = if closes { &stations[..stations.len() - 1] } else { stations };
     let grid = sweep(rows, profile);
@@ -42,7 +42,8 @@ pub fn swept_body(stations: &[(DVec3, Frame)], profile: &[DVec2], closes: bool) 
     if closes { mesh.mesh() } else { mesh.capped_mesh(profile) }
 }
 
-/// The same with a profile of `columns` points that changes from station to station; the ends are closed by the outline of the first.
+/// The same with a profile of `columns` points that changes from station to station; the ends are closed by the outline
+/// of the first.
 pub fn varying_body(stations: &[(DVec3, Frame)], columns: usize, profile: impl Fn(usize, usize) -> DVec2) -> TriMesh {
     let grid = sweep_varying(stations, columns, &profile);
     let outline: Vec<DVec2> = (0..columns).map(|column| profile(0, column)).collect();
@@ -62,8 +63,8 @@ pub fn round(radius: f64, corners: usize) -> Vec<DVec2> {
         .collect()
 }
 
-/// How far `frames` turn about their tangents from station to station, against the smallest rotation between those; back and forth
-/// all counted, radians.
+/// How far `frames` turn about their tangents from station to station, against the smallest rotation between those;
+/// back and forth all counted, radians.
 pub fn total_turning(frames: &[Frame]) -> f64 {
     frames
         .windows(2)

@@ -1,5 +1,5 @@
-//! Closest points on a spline, on one core: points near it as a strip field asks for, and points anywhere, beside trying a
-//! thousand samples of the spline, which is what a careful author without an index writes and is good to a millionth at best.
+//! Closest points on a spline, on one core: points near it as a strip field asks for, and points anywhere, beside the
+//! nearest of a thousand samples of the spline, whose error is in the last column.
 
 use glam::DVec3;
 use isochore_bench::{interleaved_medians, on_one_thread, print_row};

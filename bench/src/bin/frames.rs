@@ -1,5 +1,5 @@
-//! Frames per second of double reflection on one core: one curve in double precision, and sixteen curves abreast in single
-//! precision, beside a plain loop as the paper prints it (W. Wang et al., 2008, table I).
+//! Frames per second of double reflection on one core: one curve in double precision, and sixteen curves abreast in
+//! single precision, beside a plain loop as the paper prints it (W. Wang et al., 2008, table I).
 
 use glam::DVec3;
 use isochore_bench::{interleaved_medians, on_one_thread, print_row};

@@ -154,12 +154,13 @@ pub struct SpineArguments {
     #[arg(long)]
     pub closed: bool,
 
-    /// Reference vector to start from; the part normal to the curve counts [default: the Frenet normal, where there is one]
+    /// Reference vector to start from; the part normal to the curve counts [default: the Frenet normal, where there is
+    /// one]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     pub r0: Option<[f64; 3]>,
 
-    /// Rotation about the curve: none, minimal (closes a closed curve), or that plus a number of full turns [default: none;
-    /// minimal for the sweep of a closed curve]
+    /// Rotation about the curve: none, minimal (closes a closed curve), or that plus a number of full turns [default:
+    /// none; minimal for the sweep of a closed curve]
     #[arg(long, value_name = "none|minimal|TURNS", value_parser = parse_twist, allow_hyphen_values = true)]
     pub twist: Option<Twist>,
 

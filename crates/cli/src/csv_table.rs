@@ -13,12 +13,12 @@ pub(crate) struct CsvTable {
 }
 
 impl CsvTable {
-    /// Reads the file at `path`, whose rows have one of the given numbers of columns. A first row without a single number is
-    /// a header; empty lines and lines that begin with # are skipped.
+    /// Reads the file at `path`, whose rows have one of the given numbers of columns. A first row without a single
+    /// number is a header; empty lines and lines that begin with # are skipped.
     ///
     /// # Errors
-    /// Where the file cannot be read, a cell is not a finite number, or a row has another number of columns; row and column
-    /// are named.
+    /// Where the file cannot be read, a cell is not a finite number, or a row has another number of columns; row and
+    /// column are named.
     pub(crate) fn read(path: &Path, allowed_columns: &[usize]) -> Result<Self, CommandError> {
         let bytes = std::fs::read(path).map_err(|error| CommandError::cannot("read", path, &error))?;
         Self::parse(path, &bytes, allowed_columns)

@@ -1,8 +1,8 @@
 //! Double reflection for sixteen curves at once, in single precision.
 //!
-//! One curve is a chain of dependent steps, so a processor waits most of the time; sixteen curves fill its vectors. Chords are
-//! taken in double precision before they are rounded, since their cancellation is what costs single precision its digits on dense
-//! samples.
+//! One curve is a chain of dependent steps, so a processor waits most of the time; sixteen curves fill its vectors.
+//! Chords are taken in double precision before they are rounded, since their cancellation is what costs single
+//! precision its digits on dense samples.
 
 use glam::DVec3;
 use multiversion::multiversion;
@@ -122,7 +122,8 @@ impl SpinesAbreast {
         ReferencesAbreast { vectors: vec![VectorLanes::ZERO; self.tangents.len()], smallest: [4.0; CURVES_ABREAST] }
     }
 
-    /// Carries the part of each of `starts` normal to the first tangent of its curve along all curves, into `references`.
+    /// Carries the part of each of `starts` normal to the first tangent of its curve along all curves, into
+    /// `references`.
     ///
     /// # Errors
     /// [`FrameError::Reference`] where a start is along its first tangent.
@@ -145,7 +146,8 @@ impl SpinesAbreast {
     /// The frames of one curve, made orthonormal in double precision.
     ///
     /// # Errors
-    /// [`FrameError::DegenerateSegment`] where a segment of the curve determines no rotation; the frames of the other curves are good.
+    /// [`FrameError::DegenerateSegment`] where a segment of the curve determines no rotation; the frames of the other
+    /// curves are good.
     ///
     /// # Panics
     /// If there is no such curve.
@@ -174,8 +176,8 @@ impl SpinesAbreast {
     }
 }
 
-/// The kernel: double reflection for all lanes, segment by segment. Compiled for several instruction sets, none of which fuses
-/// multiplications and additions, so that all give the same bits.
+/// The kernel: double reflection for all lanes, segment by segment. Compiled for several instruction sets, none of
+/// which fuses multiplications and additions, so that all give the same bits.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
 fn carry_lanes(chords: &[VectorLanes], tangents: &[VectorLanes], references: &mut [VectorLanes]) -> Lanes {
     let mut smallest = [4.0; CURVES_ABREAST];

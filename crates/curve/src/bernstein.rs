@@ -2,8 +2,8 @@
 
 use std::ops::{Add, Mul};
 
-/// Bernstein coefficients of the product of two polynomials, whose coefficients multiply by `multiply`: scalars, scalars with
-/// vectors, dot and cross products alike.
+/// Bernstein coefficients of the product of two polynomials, whose coefficients multiply by `multiply`: scalars,
+/// scalars with vectors, dot and cross products alike.
 pub(crate) fn product<A: Copy, B: Copy, C>(f: &[A], g: &[B], multiply: impl Fn(A, B) -> C) -> Vec<C>
 where
     C: Copy + Default + Add<Output = C> + Mul<f64, Output = C>,

@@ -5,22 +5,22 @@ use glam::DVec3;
 use crate::Curve;
 use crate::quadrature::gauss;
 
-/// Turning of the tangent inside one piece of a [`ClosestPoint`], radians, at most. Larger: fewer pieces, but more of them
-/// fail the monotonicity test and are split again at every query. Smaller: more spheres to test.
+/// Turning of the tangent inside one piece of a [`ClosestPoint`], radians, at most. Larger: fewer pieces, but more of
+/// them fail the monotonicity test and are split again at every query. Smaller: more spheres to test.
 const PIECE_TURNING: f64 = 0.3;
 
 /// Halvings of a smooth piece at most while its turning is too large; reached only around cusps.
 const PIECE_DEPTH: u32 = 12;
 
-/// Halvings of a piece during a query where the derivative of the distance is not monotonic. A smaller number misses minima
-/// that are close together beyond the center of curvature; each more doubles the cost of such queries.
+/// Halvings of a piece during a query where the derivative of the distance is not monotonic. A smaller number misses
+/// minima that are close together beyond the center of curvature; each more doubles the cost of such queries.
 const QUERY_DEPTH: u32 = 6;
 
 /// Bracketed Newton steps at most: enough for bisection alone to reach rounding.
 const STEPS: usize = 60;
 
-/// A Newton step this small, as a share of the piece, is the last: what is missing after it is its square. Larger: digits are
-/// lost. Smaller: one more step that changes nothing.
+/// A Newton step this small, as a share of the piece, is the last: what is missing after it is its square. Larger:
+/// digits are lost. Smaller: one more step that changes nothing.
 const LAST_STEP: f64 = 1e-8;
 
 /// A point of a curve at which the distance to the query is a local minimum.
@@ -53,15 +53,15 @@ struct Piece {
     radius: f64,
     /// Position at the start, and the vector from there to the end.
     chord: [DVec3; 2],
-    /// No point of the piece is farther from its chord: its inscribed triangle with the farthest point turns no more than
-    /// the piece itself, so that length · turning / 4 is enough.
+    /// No point of the piece is farther from its chord: its inscribed triangle with the farthest point turns no more
+    /// than the piece itself, so that length · turning / 4 is enough.
     height: f64,
     /// Queries nearer than this to every point of the piece have one minimum on it at most.
     calm_distance: f64,
     is_first: bool,
     is_last: bool,
-    /// Where the slope at the end is taken: at the start of the domain for the last piece of a closed curve, so that the two
-    /// pieces that meet there see the same sign and no minimum falls between them by rounding.
+    /// Where the slope at the end is taken: at the start of the domain for the last piece of a closed curve, so that
+    /// the two pieces that meet there see the same sign and no minimum falls between them by rounding.
     end_of_slope: f64,
 }
 
@@ -81,8 +81,9 @@ struct Slope {
     value: f64,
     /// Its own derivative, for Newton's method.
     derivative: f64,
-    /// A positive multiple of the derivative that it has by arc length, 1 − κ n · (query − x): unlike the derivative by the
-    /// parameter, it does not change where the parameter runs faster. Where its sign is constant there is one root at most.
+    /// A positive multiple of the derivative that it has by arc length, 1 − κ n · (query − x): unlike the derivative by
+    /// the parameter, it does not change where the parameter runs faster. Where its sign is constant there is one root
+    /// at most.
     rise: f64,
 }
 
@@ -157,8 +158,8 @@ impl<C: Curve> ClosestPoint<C> {
 
     /// Every local minimum of the distance to `query` that is not farther than `within`, nearest first.
     ///
-    /// The ends of an open curve count where the distance grows from them. A query at the center of an arc has no isolated
-    /// minimum; [`closest`](Self::closest) still answers there.
+    /// The ends of an open curve count where the distance grows from them. A query at the center of an arc has no
+    /// isolated minimum; [`closest`](Self::closest) still answers there.
     pub fn branches(&self, query: DVec3, within: f64) -> Vec<CurveProjection> {
         let mut found = Vec::new();
         for piece in &self.pieces {

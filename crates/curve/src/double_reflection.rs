@@ -1,20 +1,22 @@
 //! The double reflection step.
 //!
-//! Source: W. Wang, B. Jüttler, D. Zheng, Y. Liu, Computation of rotation minimizing frames, ACM Transactions on Graphics
-//! 27(1), 2008, table I. Symbols there: v₁ = `chord`, t_i = `start`, t_{i+1} = `end`, r_i = `r`.
+//! Source: W. Wang, B. Jüttler, D. Zheng, Y. Liu, Computation of rotation minimizing frames, ACM Transactions on
+//! Graphics 27(1), 2008, table I. Symbols there: v₁ = `chord`, t_i = `start`, t_{i+1} = `end`, r_i = `r`.
 
 use glam::DVec3;
 
-/// Squared chords below this are no chord: their squares are denormal and divide badly. A chord this short is 1e-150 long.
+/// Squared chords below this are no chord: their squares are denormal and divide badly. A chord this short is 1e-150
+/// long.
 const SHORTEST_SQUARED_CHORD: f64 = 1e-300;
 
 /// The squared vector of the second reflection, at most 4 and near 4 for well sampled curves, must not be below this.
-/// Larger: coarse samples that still work are refused (8 samples of the torus knot reach 0.9). Smaller: a reversed tangent
-/// passes, and the frame jumps on rounding, since the limit depends on the direction in which this vector vanishes.
+/// Larger: coarse samples that still work are refused (8 samples of the torus knot reach 0.9). Smaller: a reversed
+/// tangent passes, and the frame jumps on rounding, since the limit depends on the direction in which this vector
+/// vanishes.
 pub(crate) const SMALLEST_SECOND_REFLECTION: f64 = 0.04;
 
-/// Carries `r` from the normal plane of the unit tangent `start` to that of `end`, by a reflection along `chord` and one that
-/// brings the tangents together. None where the two reflections are not determined.
+/// Carries `r` from the normal plane of the unit tangent `start` to that of `end`, by a reflection along `chord` and
+/// one that brings the tangents together. None where the two reflections are not determined.
 ///
 /// The result is exact for curves on a sphere or plane and of fifth order in the length of the step for others. The
 /// step commutes with inversions, and back and forth is the identity.

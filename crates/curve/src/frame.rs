@@ -36,8 +36,8 @@ impl Frame {
         self.r * offset.x + self.s * offset.y
     }
 
-    /// Angle about the tangent from this frame's reference vector to `direction`, in (−π, π]. Zero for a direction along the
-    /// tangent.
+    /// Angle about the tangent from this frame's reference vector to `direction`, in (−π, π]. Zero for a direction
+    /// along the tangent.
     pub fn angle_to(&self, direction: DVec3) -> f64 {
         libm::atan2(self.s.dot(direction), self.r.dot(direction))
     }
@@ -53,7 +53,8 @@ pub enum FrameMethod {
     Projection,
     /// Smallest rotation between the tangents (Bloomenthal 1990): second order.
     Rotation,
-    /// Double reflection with chords estimated from the tangents of uniform samples (equation 17): fourth order, without points.
+    /// Double reflection with chords estimated from the tangents of uniform samples (equation 17): fourth order,
+    /// without points.
     TangentsOnly,
 }
 
@@ -70,10 +71,11 @@ pub enum DegenerateSegment {
 /// Frames at the stations of a [`Spine`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frames {
-    /// One frame a station, one more than segments: on a closed spine the last is the frame that arrives back at the first
-    /// point.
+    /// One frame a station, one more than segments: on a closed spine the last is the frame that arrives back at the
+    /// first point.
     pub stations: Vec<Frame>,
-    /// Segments on which the smallest rotation stood in for the method: repeated points, and degenerate segments on request.
+    /// Segments on which the smallest rotation stood in for the method: repeated points, and degenerate segments on
+    /// request.
     pub substituted: Vec<usize>,
 }
 
@@ -100,8 +102,8 @@ pub enum FrameError {
     },
 }
 
-/// Squared sine of the angle between reference vector and tangent at least. Larger: usable vectors are refused. Smaller: the
-/// rounding of an almost parallel vector decides where the frame starts.
+/// Squared sine of the angle between reference vector and tangent at least. Larger: usable vectors are refused.
+/// Smaller: the rounding of an almost parallel vector decides where the frame starts.
 const SMALLEST_SQUARED_SINE: f64 = 1e-20;
 
 /// The part of `reference` normal to the unit vector `tangent`, as a unit vector.
@@ -118,11 +120,11 @@ pub fn orthogonal_reference(reference: DVec3, tangent: DVec3) -> Result<DVec3, F
     Ok(across.normalize().reject_from_normalized(tangent).normalize())
 }
 
-/// Carries a frame along `spine` with the least rotation about the tangent, starting from the part of `reference` normal to
-/// the first tangent.
+/// Carries a frame along `spine` with the least rotation about the tangent, starting from the part of `reference`
+/// normal to the first tangent.
 ///
-/// Two equal neighboring points have no chord; every method then takes the smallest rotation between their tangents, and
-/// the segment is listed in [`Frames::substituted`].
+/// Two equal neighboring points have no chord; every method then takes the smallest rotation between their tangents,
+/// and the segment is listed in [`Frames::substituted`].
 ///
 /// # Errors
 /// A reference along the first tangent, and segments that determine no rotation, unless `degenerate` lets them pass;

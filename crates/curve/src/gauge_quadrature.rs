@@ -1,8 +1,8 @@
 //! Exact frames of analytic curves, by quadrature against a fixed direction.
 //!
-//! Turn a fixed unit vector a to the tangent by the smallest rotation; it carries a frame along that turns about the tangent at
-//! the rate −a · (t × t′)/(1 + a · t) against a rotation-minimizing one. That rate has no singularity where the curvature
-//! vanishes, only where t = −a, so a is chosen away from every reversed tangent.
+//! Turn a fixed unit vector a to the tangent by the smallest rotation; it carries a frame along that turns about the
+//! tangent at the rate −a · (t × t′)/(1 + a · t) against a rotation-minimizing one. That rate has no singularity where
+//! the curvature vanishes, only where t = −a, so a is chosen away from every reversed tangent.
 
 use glam::DVec3;
 
@@ -11,13 +11,13 @@ use crate::quadrature::integrate;
 use crate::rotation::rotate_minimally;
 use crate::{Curve, Frame};
 
-/// Directions tried for the fixed vector, and tangents that each is tested against. More cost time and gain little once the
-/// least 1 + a · t is near its best.
+/// Directions tried for the fixed vector, and tangents that each is tested against. More cost time and gain little once
+/// the least 1 + a · t is near its best.
 const DIRECTIONS: usize = 400;
 const TANGENTS: usize = 500;
 
-/// Rotation-minimizing frames of `curve` at ascending `parameters`, to about 1e-13 radians for smooth curves: the reference
-/// that sampled methods are measured against.
+/// Rotation-minimizing frames of `curve` at ascending `parameters`, to about 1e-13 radians for smooth curves: the
+/// reference that sampled methods are measured against.
 ///
 /// # Errors
 /// [`FrameError::Reference`] where `reference` is along the first tangent.

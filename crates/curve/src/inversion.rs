@@ -1,8 +1,8 @@
 //! Inversions in spheres, of points, vectors and frames.
 //!
-//! Inversions generate the Möbius transformations. They preserve rotation-minimizing frames, and double reflection commutes
-//! with them. Source: M. Bartoň, B. Jüttler, W. Wang, Construction of rational curves with rational rotation-minimizing
-//! frames via Möbius transformations, 2009, section 2.
+//! Inversions generate the Möbius transformations. They preserve rotation-minimizing frames, and double reflection
+//! commutes with them. Source: M. Bartoň, B. Jüttler, W. Wang, Construction of rational curves with rational
+//! rotation-minimizing frames via Möbius transformations, 2009, section 2.
 
 use glam::DVec3;
 

@@ -5,18 +5,21 @@
 //! - A [`Curve`] is a formula: it gives a [`CurveJet`], position and derivatives, at a *parameter*. [`CubicSpline`],
 //!   [`Bezier`], [`TrigonometricCurve`] and any [closure](FunctionCurve) are curves.
 //! - A [`Spine`] is samples: points with unit tangents at *stations*, joined by *segments*, open or closed.
-//! - A [`Frame`] (r, s, t) is right-handed and orthonormal, with the tangent t and s = t × r; r is its *reference vector*.
-//! - A frame is *rotation-minimizing* where it does not turn about the tangent. *Twist* is what is added to that, in radians.
-//! - A *profile* is a planar curve with coordinates along r and s; swept along a spine it makes a surface, given here as a
-//!   [`PointGrid`] or as an exact [`RationalPatch`].
+//! - A [`Frame`] (r, s, t) is right-handed and orthonormal, with the tangent t and s = t × r; r is its *reference
+//!   vector*.
+//! - A frame is *rotation-minimizing* where it does not turn about the tangent. *Twist* is what is added to that, in
+//!   radians.
+//! - A *profile* is a planar curve with coordinates along r and s; swept along a spine it makes a surface, given here
+//!   as a [`PointGrid`] or as an exact [`RationalPatch`].
 //!
-//! Lengths are in model units, coordinates are `f64`. Nothing here starts a thread, and the same input gives the same bits
-//! on every machine.
+//! Lengths are in model units, coordinates are `f64`. Nothing here starts a thread, and the same input gives the same
+//! bits on every machine.
 //!
 //! # Frames along a curve
 //!
 //! ```
-//! use isochore_curve::{FrameMethod, Spine, TrigonometricCurve, close_frames, closing_angle, rotation_minimizing_frames};
+//! use isochore_curve::{FrameMethod, Spine, TrigonometricCurve};
+//! use isochore_curve::{close_frames, closing_angle, rotation_minimizing_frames};
 //!
 //! let spine = Spine::sample(&TrigonometricCurve::torus_knot(), 256)?;
 //! let reference = spine.default_reference();
@@ -56,10 +59,10 @@
 //!
 //! # What is not promised
 //!
-//! Sampled frames are exact on spheres and planes only; elsewhere double reflection is of fourth order in the spacing. Estimated
-//! tangents are of fourth order for five points or more. [`ClosestPoint::branches`] may miss a pair of minima that have
-//! just split beyond the center of curvature; [`ClosestPoint::closest`] then still returns one of them. [`reach`] is an
-//! estimate from above.
+//! Sampled frames are exact on spheres and planes only; elsewhere double reflection is of fourth order in the spacing.
+//! Estimated tangents are of fourth order for five points or more. [`ClosestPoint::branches`] may miss a pair of minima
+//! that have just split beyond the center of curvature; [`ClosestPoint::closest`] then still returns one of them.
+//! [`reach`] is an estimate from above.
 
 mod abreast;
 mod analytic;

@@ -1,13 +1,15 @@
-//! Rational curves with rational rotation-minimizing frames: planar Pythagorean-hodograph cubics seen through an inversion.
+//! Rational curves with rational rotation-minimizing frames: planar Pythagorean-hodograph cubics seen through an
+//! inversion.
 //!
-//! Source: M. Bartoň, B. Jüttler, W. Wang, Construction of rational curves with rational rotation-minimizing frames via Möbius
-//! transformations, 2009. The end points and tangents of a segment lie on a sphere. An inversion about a point f of the sphere
-//! makes it a plane, in which a Pythagorean-hodograph cubic interpolates them; the plane's normal is a rotation-minimizing
-//! vector of it. The same inversion takes cubic and frame back, to a curve of degree six on the sphere.
+//! Source: M. Bartoň, B. Jüttler, W. Wang, Construction of rational curves with rational rotation-minimizing frames via
+//! Möbius transformations, 2009. The end points and tangents of a segment lie on a sphere. An inversion about a point f
+//! of the sphere makes it a plane, in which a Pythagorean-hodograph cubic interpolates them; the plane's normal is a
+//! rotation-minimizing vector of it. The same inversion takes cubic and frame back, to a curve of degree six on the
+//! sphere.
 //!
-//! The paper takes the f farthest from the ends. The planar data can then have an inflection, which no cubic has: on a circular
-//! helix they always do. Such segments [tilt](Tilt::WhenNeeded): f moves sideways on the sphere, which bends the plane's image
-//! and leaves the frames at the joints unchanged. They are those of double reflection.
+//! The paper takes the f farthest from the ends. The planar data can then have an inflection, which no cubic has: on a
+//! circular helix they always do. Such segments [tilt](Tilt::WhenNeeded): f moves sideways on the sphere, which bends
+//! the plane's image and leaves the frames at the joints unchanged. They are those of double reflection.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -72,8 +74,8 @@ impl AnchoredInversion {
     }
 }
 
-/// A place for f in the plane that halves the chord: `direction` from its midpoint, one over the distance, and the normal
-/// of the plane that the sphere becomes.
+/// A place for f in the plane that halves the chord: `direction` from its midpoint, one over the distance, and the
+/// normal of the plane that the sphere becomes.
 #[derive(Debug, Clone, Copy)]
 struct Center {
     direction: DVec3,
@@ -127,9 +129,9 @@ impl MoebiusSegment {
         &self.image
     }
 
-    /// The rotation-minimizing frames at `parameters`, with the reference vector that follows from the part of `reference` normal to
-    /// the tangent at 0. They are rational: constant coefficients on the plane's normal and its product with the tangent,
-    /// reflected.
+    /// The rotation-minimizing frames at `parameters`, with the reference vector that follows from the part of
+    /// `reference` normal to the tangent at 0. They are rational: constant coefficients on the plane's normal and its
+    /// product with the tangent, reflected.
     ///
     /// # Errors
     /// [`FrameError::Reference`] where `reference` is along the first tangent.
@@ -232,7 +234,8 @@ impl Ends {
         let chord = difference.try_normalize().ok_or(PhCubicError::RepeatedPoint)?;
         let t0 = start_tangent.try_normalize().ok_or(PhCubicError::ZeroTangent)?;
         let t1 = end_tangent.try_normalize().ok_or(PhCubicError::ZeroTangent)?;
-        // Reflecting the end in the plane that halves the chord brings both tangents into one tangent plane of the sphere.
+        // Reflecting the end in the plane that halves the chord brings both tangents into one tangent plane of the
+        // sphere.
         let reflected = t1 - chord * (2.0 * t1.dot(chord));
         let sphere_normal = cross_of_independent(t0, reflected)
             .or_else(|| cross_of_independent(t0, chord))

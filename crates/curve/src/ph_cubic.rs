@@ -1,10 +1,11 @@
-//! Pythagorean-hodograph cubics: cubic curves with a polynomial speed, a rational Frenet frame and a rotation-minimizing frame in
-//! closed form.
+//! Pythagorean-hodograph cubics: cubic curves with a polynomial speed, a rational Frenet frame and a
+//! rotation-minimizing frame in closed form.
 //!
-//! Source: C. Mäurer, B. Jüttler, Rational approximation of rotation minimizing frames using Pythagorean-hodograph cubics,
-//! 1999, section 3. Symbols there: L₁, L₂, L₃ = `lengths`, θ from `cos_theta`, Ω = the angle from the Frenet frame to the
-//! rotation-minimizing one. The paper leaves the sign of ψ open; here it is that of −det(Δb₁, Δb₂, Δb₃). Equation (30) mixes a
-//! definite integral with a primitive; here the difference is taken, in a form without cancellation.
+//! Source: C. Mäurer, B. Jüttler, Rational approximation of rotation minimizing frames using Pythagorean-hodograph
+//! cubics, 1999, section 3. Symbols there: L₁, L₂, L₃ = `lengths`, θ from `cos_theta`, Ω = the angle from the Frenet
+//! frame to the rotation-minimizing one. The paper leaves the sign of ψ open; here it is that of −det(Δb₁, Δb₂, Δb₃).
+//! Equation (30) mixes a definite integral with a primitive; here the difference is taken, in a form without
+//! cancellation.
 
 use glam::DVec3;
 
@@ -19,20 +20,21 @@ pub use hermite::{HermiteError, PhCubicError};
 pub use rational_rotation::RationalRotation;
 pub use spline::{PhSpline, PhSplineError};
 
-/// Height of the control polygon over its length up to which a cubic counts as straight. Larger: the constant frame of such a
-/// cubic is visibly off its normal plane. Smaller: rounding, one over the square of this times larger, decides how the Frenet
-/// frame turns.
+/// Height of the control polygon over its length up to which a cubic counts as straight. Larger: the constant frame of
+/// such a cubic is visibly off its normal plane. Smaller: rounding, one over the square of this times larger, decides
+/// how the Frenet frame turns.
 const STRAIGHT: f64 = 1e-5;
 
-/// The same ratio up to which exact frames come from double reflection, whose error is its fifth power over some hundreds.
-/// Larger: that error shows. Smaller: the rounding of the Frenet frame does.
+/// The same ratio up to which exact frames come from double reflection, whose error is its fifth power over some
+/// hundreds. Larger: that error shows. Smaller: the rounding of the Frenet frame does.
 const NEARLY_STRAIGHT: f64 = 1e-3;
 
 /// A Pythagorean-hodograph cubic over [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhCubic {
     start: DVec3,
-    /// The sides of the control polygon. Kept instead of its corners, since short sides would be rounded with the positions.
+    /// The sides of the control polygon. Kept instead of its corners, since short sides would be rounded with the
+    /// positions.
     sides: [DVec3; 3],
     /// Lengths of the three sides of the control polygon.
     lengths: [f64; 3],
@@ -138,8 +140,8 @@ impl PhCubic {
         Frame::new(normal.reject_from_normalized(tangent).normalize(), tangent)
     }
 
-    /// The exact rotation-minimizing frames at ascending parameters, starting at v = 0 from the part of `reference` normal to the
-    /// tangent there.
+    /// The exact rotation-minimizing frames at ascending parameters, starting at v = 0 from the part of `reference`
+    /// normal to the tangent there.
     ///
     /// # Errors
     /// [`FrameError::Reference`] where `reference` is along the first tangent.

@@ -1,10 +1,10 @@
 //! Surfaces swept by a rigid planar profile along a spine, and the quantities by which they are judged.
 //!
-//! With rotation-minimizing frames these are profile surfaces: their parameter lines are lines of curvature, a straight profile gives
-//! a developable, and offsets are again of this kind.
+//! With rotation-minimizing frames these are profile surfaces: their parameter lines are lines of curvature, a straight
+//! profile gives a developable, and offsets are again of this kind.
 //!
-//! Source: Mäurer and Jüttler 1999, section 2. The paper's normal (10) and curvature (11) have opposite signs; with the normal
-//! K = −κ_u κ_v cos θ.
+//! Source: Mäurer and Jüttler 1999, section 2. The paper's normal (10) and curvature (11) have opposite signs; with the
+//! normal K = −κ_u κ_v cos θ.
 
 use glam::{DVec2, DVec3};
 
@@ -49,8 +49,8 @@ pub fn sweep(stations: &[(DVec3, Frame)], profile: &[DVec2]) -> PointGrid {
     sweep_varying(stations, profile.len(), |_, column| profile[column])
 }
 
-/// Sweeps a profile of `columns` points that changes from station to station: `profile(station, column)` gives coordinates along
-/// r and s.
+/// Sweeps a profile of `columns` points that changes from station to station: `profile(station, column)` gives
+/// coordinates along r and s.
 pub fn sweep_varying(
     stations: &[(DVec3, Frame)],
     columns: usize,
@@ -67,8 +67,8 @@ pub fn sweep_varying(
     PointGrid { points, rows: stations.len(), columns }
 }
 
-/// Condition (9) as a margin: 1 − κ n · p for the point p of the profile. The profile surface is regular where it is positive, and
-/// the sweep there advances by this share of the spine's own step.
+/// Condition (9) as a margin: 1 − κ n · p for the point p of the profile. The profile surface is regular where it is
+/// positive, and the sweep there advances by this share of the spine's own step.
 pub fn regularity(spine: &CurveJet, frame: &Frame, profile: DVec2) -> f64 {
     1.0 - spine.curvature_vector().dot(frame.offset(profile))
 }
@@ -102,15 +102,15 @@ impl ProfileJet {
     }
 }
 
-/// Gaussian curvature of the profile surface, K = −κ_u κ_v cos θ (equation 13 with the sign of the normal (10)). None where the
-/// surface is singular.
+/// Gaussian curvature of the profile surface, K = −κ_u κ_v cos θ (equation 13 with the sign of the normal (10)). None
+/// where the surface is singular.
 pub fn profile_surface_curvature(spine: &CurveJet, frame: &Frame, profile: &ProfileJet) -> Option<f64> {
     let margin = regularity(spine, frame, profile.position);
     if margin == 0.0 {
         return None;
     }
-    // κ_v cos θ is the curvature vector of the line u = const along the surface normal; that line runs parallel to the spine,
-    // its speed scaled by the margin.
+    // κ_v cos θ is the curvature vector of the line u = const along the surface normal; that line runs parallel to the
+    // spine, its speed scaled by the margin.
     let across = spine.curvature_vector().dot(frame.offset(profile.normal())) / margin;
     Some(-profile.curvature() * across)
 }

@@ -9,8 +9,8 @@ const NODES: [(f64, f64); 5] = [
     (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
 ];
 
-/// Relative agreement asked of one panel and its two halves. Larger: exact references lose digits. Smaller: rounding keeps
-/// the recursion going to its full depth for nothing.
+/// Relative agreement asked of one panel and its two halves. Larger: exact references lose digits. Smaller: rounding
+/// keeps the recursion going to its full depth for nothing.
 const TOLERANCE: f64 = 1e-14;
 
 /// Halvings of a panel at most: the narrowest panel is a 2⁻¹⁸th of the first. More only costs time at jumps.

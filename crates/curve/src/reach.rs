@@ -17,9 +17,9 @@ pub struct Reach {
 
 /// Estimates the reach of `curve` from `samples` points (at least 8 are taken), in time quadratic in their number.
 ///
-/// Federer's formula: the reach is the infimum over pairs of points of |b − a|² / (2 · distance of b − a from the tangent
-/// line at a). Over samples it comes from above, with an error of second order in their spacing. Past the ends of an open
-/// curve only those directions count that leave it. A straight line has infinite reach.
+/// Federer's formula: the reach is the infimum over pairs of points of |b − a|² / (2 · distance of b − a from the
+/// tangent line at a). Over samples it comes from above, with an error of second order in their spacing. Past the ends
+/// of an open curve only those directions count that leave it. A straight line has infinite reach.
 ///
 /// Source: H. Federer, Curvature measures, 1959, theorem 4.18.
 pub fn reach(curve: &impl Curve, samples: usize) -> Reach {

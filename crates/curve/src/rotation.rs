@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-/// Squared sum of the tangents at least. Larger: sharp but determined turns are refused. Smaller: nearly opposite tangents
-/// choose their plane of rotation by rounding.
+/// Squared sum of the tangents at least. Larger: sharp but determined turns are refused. Smaller: nearly opposite
+/// tangents choose their plane of rotation by rounding.
 const SMALLEST_SQUARED_SUM: f64 = 1e-12;
 
-/// Carries `r` from the normal plane of the unit tangent `start` to that of `end`, by the smallest rotation that takes one to the
-/// other. None where the two are opposite.
+/// Carries `r` from the normal plane of the unit tangent `start` to that of `end`, by the smallest rotation that takes
+/// one to the other. None where the two are opposite.
 ///
 /// An error of third order a step. No threshold is needed for parallel tangents: (1 − cos)/sin² is written 1/(1 + cos).
 ///

@@ -7,8 +7,8 @@ use crate::tangents::{TangentError, TangentRule, estimate_tangents};
 use crate::{Curve, CurveJet};
 
 /// A closed spine whose closing chord is this many times longer than its longest other chord is refused as open data.
-/// Larger: the gap of an open curve passes as a segment, and the frame jumps across it. Smaller: coarse but closed data with
-/// one long side are refused.
+/// Larger: the gap of an open curve passes as a segment, and the frame jumps across it. Smaller: coarse but closed data
+/// with one long side are refused.
 const CLOSING_GAP: f64 = 4.0;
 
 /// Samples of a curve that are fit to carry frames: at least two finite points with a unit tangent each.
@@ -169,7 +169,8 @@ impl Spine {
         if self.closed && station == self.points.len() { 0 } else { station }
     }
 
-    /// The same spine run backwards: stations in reverse order and tangents reversed. A closed spine keeps its first point.
+    /// The same spine run backwards: stations in reverse order and tangents reversed. A closed spine keeps its first
+    /// point.
     pub fn reversed(&self) -> Self {
         let mut points = self.points.clone();
         let mut tangents: Vec<DVec3> = self.tangents.iter().map(|&tangent| -tangent).collect();
@@ -197,8 +198,8 @@ impl Spine {
             .collect()
     }
 
-    /// The discrete Frenet normal at the first point, which is where frames start by default: the direction in which the
-    /// tangent turns, by a difference stencil over the first tangents. Where the tangent does not turn, a vector
+    /// The discrete Frenet normal at the first point, which is where frames start by default: the direction in which
+    /// the tangent turns, by a difference stencil over the first tangents. Where the tangent does not turn, a vector
     /// perpendicular to it in its plane with the axis of its smallest component.
     pub fn default_reference(&self) -> DVec3 {
         let count = self.tangents.len();

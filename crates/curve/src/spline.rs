@@ -20,8 +20,8 @@ pub enum EndCondition {
     /// The second derivative vanishes: the calmest shape, an error of second order near the ends.
     #[default]
     Natural,
-    /// The first two pieces are one cubic, as are the last two: fourth order up to the ends, for dense samples of a smooth
-    /// curve. Three points give a parabola, two a line.
+    /// The first two pieces are one cubic, as are the last two: fourth order up to the ends, for dense samples of a
+    /// smooth curve. Three points give a parabola, two a line.
     NotAKnot,
 }
 
@@ -52,8 +52,8 @@ pub enum SplineError {
     },
 }
 
-/// Coordinates beyond this are refused. Larger: sixth powers of lengths, as in the torsion, overflow. Smaller: nothing real is
-/// lost until about 1e30.
+/// Coordinates beyond this are refused. Larger: sixth powers of lengths, as in the torsion, overflow. Smaller: nothing
+/// real is lost until about 1e30.
 pub(crate) const COORDINATE_LIMIT: f64 = 1e50;
 
 /// A cubic spline with continuous second derivative through given points, open or closed.
@@ -79,7 +79,8 @@ impl CubicSpline {
         let spacings = spacings(points, parametrization, false)?;
         let count = points.len();
         let slopes: Vec<DVec3> = (0..count - 1).map(|i| (points[i + 1] - points[i]) / spacings[i]).collect();
-        // Second derivatives at the points; rows 1 … count − 2 of the system are the continuity of the first derivative.
+        // Second derivatives at the points; rows 1 … count − 2 of the system are the continuity of the first
+        // derivative.
         let mut seconds = vec![DVec3::ZERO; count];
         let inner = count - 2;
         if inner > 0 {

@@ -1,16 +1,16 @@
 //! Tangents estimated from points alone.
 //!
-//! Source: Wang et al. 2008, section 6.1, and Zheng's thesis, section 7.1. The direction error of the five-point stencils is of
-//! fourth order, not fifth as printed there. The weights of the circle tangent printed in the thesis give the bisector of the
-//! two chords; those here give the tangent of the circle.
+//! Source: Wang et al. 2008, section 6.1, and Zheng's thesis, section 7.1. The direction error of the five-point
+//! stencils is of fourth order, not fifth as printed there. The weights of the circle tangent printed in the thesis
+//! give the bisector of the two chords; those here give the tangent of the circle.
 
 use glam::DVec3;
 
 /// How [`Spine::from_points`](crate::Spine::from_points) estimates tangents.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum TangentRule<'a> {
-    /// [`Uniform`](Self::Uniform) where the spacing of the points is as smooth as that of samples at equal steps of a smooth
-    /// parameter, [`ArcLength`](Self::ArcLength) elsewhere.
+    /// [`Uniform`](Self::Uniform) where the spacing of the points is as smooth as that of samples at equal steps of a
+    /// smooth parameter, [`ArcLength`](Self::ArcLength) elsewhere.
     #[default]
     Automatic,
     /// Five-point stencils for points at equal steps of some smooth parameter: fourth order.
@@ -49,13 +49,14 @@ pub enum TangentError {
     },
 }
 
-/// Second differences of the logarithm of the spacing above this multiple of the squared turning angle mean that the points
-/// are not at equal steps of a smooth parameter. Larger: jittered points get uniform stencils, which do not converge on them.
-/// Smaller: coarse uniform samples get the arc-length stencils, which are about three times less accurate there.
+/// Second differences of the logarithm of the spacing above this multiple of the squared turning angle mean that the
+/// points are not at equal steps of a smooth parameter. Larger: jittered points get uniform stencils, which do not
+/// converge on them. Smaller: coarse uniform samples get the arc-length stencils, which are about three times less
+/// accurate there.
 const ROUGHNESS: f64 = 0.25;
 
-/// Below this length relative to the largest weighted chord, a tangent is cancellation. Larger: strongly turning samples are
-/// refused. Smaller: rounding passes as a direction.
+/// Below this length relative to the largest weighted chord, a tangent is cancellation. Larger: strongly turning
+/// samples are refused. Smaller: rounding passes as a direction.
 const CANCELLATION: f64 = 1e-10;
 
 /// Unit tangents at `points`, which have been checked to be finite and enough.

@@ -1,7 +1,7 @@
 //! Chords estimated from tangents, for double reflection without points.
 //!
-//! Source: Wang et al. 2008, equation (17), which is ∫ t du over the segment by the Adams–Moulton weights of order four. The
-//! formulas at the two ends, missing there, are the same weights with the stencil shifted inward.
+//! Source: Wang et al. 2008, equation (17), which is ∫ t du over the segment by the Adams–Moulton weights of order
+//! four. The formulas at the two ends, missing there, are the same weights with the stencil shifted inward.
 
 use glam::DVec3;
 

@@ -1,8 +1,8 @@
 //! Extra rotation about the tangent, spread so that frames meet conditions with the least motion.
 //!
-//! Source: Wang et al. 2008, section 6.3. The angular velocity of a frame turned by α(s) against a rotation-minimizing one has the
-//! square κ² + α′². Its least total (equation 21) makes α′ proportional to the curvature, its least total square (equation 24)
-//! makes it constant.
+//! Source: Wang et al. 2008, section 6.3. The angular velocity of a frame turned by α(s) against a rotation-minimizing
+//! one has the square κ² + α′². Its least total (equation 21) makes α′ proportional to the curvature, its least total
+//! square (equation 24) makes it constant.
 
 use std::f64::consts::{PI, TAU};
 
@@ -93,8 +93,8 @@ pub fn closing_angle(frames: &[Frame]) -> f64 {
     frames[frames.len() - 1].angle_to(frames[0].r)
 }
 
-/// Twists rotation-minimizing `frames` of a closed `spine` so that the last is the first, with `turns` full turns beyond the
-/// least rotation.
+/// Twists rotation-minimizing `frames` of a closed `spine` so that the last is the first, with `turns` full turns
+/// beyond the least rotation.
 ///
 /// # Panics
 /// If there is not one frame a station.
@@ -102,8 +102,8 @@ pub fn close_frames(spine: &Spine, frames: &[Frame], law: TwistLaw, turns: i32) 
     spread(spine, frames, closing_angle(frames) + TAU * f64::from(turns), law)
 }
 
-/// Twists rotation-minimizing `frames` so that the last has its reference vector along `direction`, with `turns` full turns beyond
-/// the least rotation (equations 18 and 19).
+/// Twists rotation-minimizing `frames` so that the last has its reference vector along `direction`, with `turns` full
+/// turns beyond the least rotation (equations 18 and 19).
 ///
 /// # Errors
 /// [`TwistError::Direction`] where `direction` has no part normal to the last tangent.
@@ -131,8 +131,8 @@ pub fn spread(spine: &Spine, frames: &[Frame], total: f64, law: TwistLaw) -> Twi
 
 /// Twists rotation-minimizing `frames` so that each constraint is met, by the least rotation between neighboring ones.
 ///
-/// Before the first and after the last constraint an open spine carries no further twist. A closed spine turns on from the last to the
-/// first, whose `turns` count for that way round, and so closes.
+/// Before the first and after the last constraint an open spine carries no further twist. A closed spine turns on from
+/// the last to the first, whose `turns` count for that way round, and so closes.
 ///
 /// # Errors
 /// No constraints, stations out of order, and directions along the tangent.

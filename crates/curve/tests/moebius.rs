@@ -20,7 +20,8 @@ struct Errors {
     position: f64,
 }
 
-/// Errors (23), (25) of the spline with `segments` segments: frames compared with those at the nearest points of the cubic.
+/// Errors (23), (25) of the spline with `segments` segments: frames compared with those at the nearest points of the
+/// cubic.
 fn errors(segments: usize, tilt: Tilt, samples: usize) -> Errors {
     let curve = cubic();
     let reference = -DVec3::Y;
@@ -67,8 +68,8 @@ fn example_two_has_the_golden_errors() {
         // Given to nine digits at least, but for the last row, which has six.
         let bound = if segments == 64 { 5e-7 } else { 1e-8 };
         assert!((errors.end / end - 1.0).abs() < bound, "{segments}: {:e}", errors.end);
-        // The golden averages and maxima of more segments come from fewer samples: averages good to 0.7 percent, maxima a few
-        // percent low.
+        // The golden averages and maxima of more segments come from fewer samples: averages good to 0.7 percent, maxima
+        // a few percent low.
         assert!((errors.average / average - 1.0).abs() < 0.008, "{segments}: {:e} against {average:e}", errors.average);
         for (found, golden) in [(errors.largest, largest), (errors.position, position)] {
             assert!((0.999..1.04).contains(&(found / golden)), "{segments}: {found:e} against {golden:e}");

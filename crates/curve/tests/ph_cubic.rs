@@ -158,13 +158,14 @@ fn short_arcs_keep_their_digits() {
         Bezier::new(vec![DVec3::ZERO, v(1.0 / 3.0, 0.0, 0.0), v(2.0 / 3.0, 1.0 / 6.0, 0.0), v(1.0, 0.5, 1.0 / 6.0)]);
     let (a, b) = (curve.jet(0.0), curve.jet(h));
     let cubic = PhCubic::hermite(a.position, b.position, a.first, b.first).unwrap();
-    // The first side is a third of the length up to a share h². The tangents differ by h, with ten digits, and their product
-    // with the chord cancels once more; with the printed form 4e-2 would be left.
+    // The first side is a third of the length up to a share h². The tangents differ by h, with ten digits, and their
+    // product with the chord cancels once more; with the printed form 4e-2 would be left.
     assert!((cubic.sides()[0].length() / (h / 3.0) - 1.0).abs() < 5e-6, "{}", cubic.sides()[0].length() / (h / 3.0));
 }
 
 proptest! {
-    /// Every solution satisfies the two conditions (17) on the control polygon: the speed is the length of the derivative.
+    /// Every solution satisfies the two conditions (17) on the control polygon: the speed is the length of the
+    /// derivative.
     #[test]
     fn solutions_are_pythagorean(
         end in prop::array::uniform3(-2.0..2.0f64),
@@ -270,7 +271,8 @@ fn flat_cubics_have_quiet_frames() {
         let frames = cubic.exact_frames(&[0.0, 0.3, 1.0], DVec3::Y).unwrap();
         let exact = exact_frames(&cubic, &[0.0, 0.3, 1.0], DVec3::Y).unwrap();
         for (frame, exact) in frames.iter().zip(&exact) {
-            // The data are rounded at 2e-16 of coordinates up to 4, which the bend magnifies where the Frenet frame is used.
+            // The data are rounded at 2e-16 of coordinates up to 4, which the bend magnifies where the Frenet frame is
+            // used.
             assert!(frame.r.distance(exact.r) < 2e-9, "bend {bend:e}: {:e}", frame.r.distance(exact.r));
         }
     }

@@ -1,4 +1,5 @@
-//! Properties of double reflection that its rivals lack: symmetry, Möbius invariance, exactness on spheres, dense samples.
+//! Properties of double reflection that its rivals lack: symmetry, Möbius invariance, exactness on spheres, dense
+//! samples.
 #![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
 
 use glam::DVec3;
@@ -93,8 +94,8 @@ fn spherical_samples(count: usize) -> Spine {
 #[test]
 fn eight_samples_of_a_spherical_curve_are_enough() {
     let spine = spherical_samples(8);
-    // On a sphere the normal makes a constant angle with every rotation-minimizing vector. Start 45 degrees from it, since
-    // projection carries the normal itself exactly.
+    // On a sphere the normal makes a constant angle with every rotation-minimizing vector. Start 45 degrees from it,
+    // since projection carries the normal itself exactly.
     let start = Frame::new(spine.point(0), spine.tangent(0)).turned(std::f64::consts::FRAC_PI_4);
     let error = |method| {
         let last = carry(&spine, start.r, method)[7];
@@ -150,7 +151,8 @@ fn dense_samples_lose_nothing() {
 
 #[test]
 fn s_curve_errors_shrink_with_its_height() {
-    // Largest angle error with 64 segments, for the heights of Zheng's section 3.4. Torsion near the middle is −2.4/height.
+    // Largest angle error with 64 segments, for the heights of Zheng's section 3.4. Torsion near the middle is
+    // −2.4/height.
     for (height, expected, bound) in [
         (1.0, 4.750e-7, 5e-11),
         (0.1, 1.360e-7, 5e-11),
@@ -254,8 +256,8 @@ proptest! {
         if let Ok(frames) = rotation_minimizing_frames(&spine, reference, method, DegenerateSegment::Rotate) {
             prop_assert_eq!(frames.stations.len(), spine.segments() + 1);
             for frame in frames.stations {
-                // Reflections amplify rounding by up to 1/√(c₂/4) = 10 a step; a nearly parallel reference by 1e10 at worst
-                // is removed by its second pass.
+                // Reflections amplify rounding by up to 1/√(c₂/4) = 10 a step; a nearly parallel reference by 1e10 at
+                // worst is removed by its second pass.
                 prop_assert!((frame.r.length() - 1.0).abs() < 1e-12);
                 prop_assert!(frame.r.dot(frame.t).abs() < 1e-10);
                 prop_assert!((frame.r.cross(frame.s) - frame.t).length() < 1e-10);

@@ -1,4 +1,5 @@
-//! The torus knot of Wang et al. 2008, equation (16): golden frames from 40-digit arithmetic, tables III and IV, orders.
+//! The torus knot of Wang et al. 2008, equation (16): golden frames from 40-digit arithmetic, tables III and IV,
+//! orders.
 #![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
 
 use std::f64::consts::{FRAC_PI_4, TAU};
@@ -61,8 +62,8 @@ fn end_error(last: Frame) -> f64 {
 
 #[test]
 fn errors_of_double_reflection_and_rivals_are_those_of_the_tables() {
-    // Segments, then double reflection, projection and rotation by an independent 40-digit computation. The published rows
-    // agree with all of them but for projection and rotation with 64 segments, which are misprinted.
+    // Segments, then double reflection, projection and rotation by an independent 40-digit computation. The published
+    // rows agree with all of them but for projection and rotation with 64 segments, which are misprinted.
     let rows = [
         (64, 5.09809432627084e-3, 3.63617785478575e-1, 7.78561373660012e-1),
         (128, 3.24009271602405e-4, 9.02970594725578e-2, 1.9108374202716e-1),
@@ -281,7 +282,8 @@ fn second_reflection_is_well_away_from_zero_on_coarse_samples() {
 
 #[test]
 fn quarter_turns_of_the_knot_start_anywhere() {
-    // The exact frame of a part is the exact frame of the whole, turned: a check of intervals that do not start at zero.
+    // The exact frame of a part is the exact frame of the whole, turned: a check of intervals that do not start at
+    // zero.
     let whole = exact_frames(&knot(), &[0.0, FRAC_PI_4, 3.0], -DVec3::X).unwrap();
     let part = exact_frames(&knot(), &[FRAC_PI_4, 3.0], whole[1].r).unwrap();
     assert!(part[1].r.distance(whole[2].r) < 1e-13);

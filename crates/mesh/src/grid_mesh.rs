@@ -7,8 +7,8 @@ use crate::TriMesh;
 
 /// A grid of points, row by row, that becomes two triangles a cell.
 ///
-/// The outside is where the steps along a row, then along a column, turn counter-clockwise: to the right of a row that runs
-/// counter-clockwise about the direction of the columns.
+/// The outside is where the steps along a row, then along a column, turn counter-clockwise: to the right of a row that
+/// runs counter-clockwise about the direction of the columns.
 #[derive(Debug, Clone, Copy)]
 pub struct GridMesh<'a> {
     /// Points, row by row, model units.
@@ -45,8 +45,8 @@ impl GridMesh<'_> {
         TriMesh { positions: self.points.to_vec(), triangles, ..TriMesh::default() }
     }
 
-    /// The mesh with its first and last rows closed by the inside of `outline`, a simple polygon with one corner a column,
-    /// counter-clockwise as seen from the last row.
+    /// The mesh with its first and last rows closed by the inside of `outline`, a simple polygon with one corner a
+    /// column, counter-clockwise as seen from the last row.
     ///
     /// # Panics
     /// As [`mesh`](Self::mesh), and if the outline has not one corner a column.

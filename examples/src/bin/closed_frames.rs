@@ -1,5 +1,5 @@
-//! A closed spine whose rotation-minimizing frame does not close, and frames that do: by the least twist, and with one and two turns more,
-//! spread by turning and by arc length (figure 13 of Wang et al. 2008).
+//! A closed spine whose rotation-minimizing frame does not close, and frames that do: by the least twist, and with one
+//! and two turns more, spread by turning and by arc length (figure 13 of Wang et al. 2008).
 
 use std::error::Error;
 

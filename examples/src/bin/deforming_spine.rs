@@ -1,5 +1,5 @@
-//! Frames of a spine that bends through a plane curve with an inflection: the Frenet frame flips in an instant, the rotation-minimizing
-//! frame hardly moves (figure 1.2 of Zheng's thesis, on the curve of its section 3.4).
+//! Frames of a spine that bends through a plane curve with an inflection: the Frenet frame flips in an instant, the
+//! rotation-minimizing frame hardly moves (figure 1.2 of Zheng's thesis, on the curve of its section 3.4).
 
 use std::error::Error;
 

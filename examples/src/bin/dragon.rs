@@ -1,5 +1,5 @@
-//! The body of a dragon along a spine, with a frame that has the crest up at the tail and at the head (figure 7.4 of Zheng's
-//! thesis).
+//! The body of a dragon along a spine, with a frame that has the crest up at the tail and at the head (figure 7.4 of
+//! Zheng's thesis).
 
 use std::error::Error;
 

@@ -1,5 +1,5 @@
-//! Tables III and IV of Wang et al. 2008 (6.2 and 6.3 of Zheng's thesis) measured again and printed beside the published
-//! figures, and what became of table V (6.4), whose printed data have no curve.
+//! Tables III and IV of Wang et al. 2008 (6.2 and 6.3 of Zheng's thesis) measured again and printed beside the
+//! published figures, and what became of table V (6.4), whose printed data have no curve.
 
 #![expect(clippy::print_stdout, reason = "the tables are the result")]
 
@@ -23,6 +23,13 @@ const PUBLISHED: [(usize, [f64; 4]); 6] = [
 
 const METHODS: [&str; 4] = ["double reflection", "Runge-Kutta", "projection", "rotation"];
 
+/// What is known of the entries with a star.
+const REMARKS: &str = "\
+* differs from the published digits. Projection and rotation with 64 segments are misprinted: their published
+  ratios, 0.579 and 0.737, contradict second order. Runge-Kutta with 64 and 128 segments is 0.8 and 0.4 percent off,
+  of unknown cause; of rotation with 256 segments the largest error along the curve is published, 4.76E-2, where the
+  end has 4.7548E-2. All other entries agree, but that 7.955E-8 is published cut short, as 7.95E-8.";
+
 fn main() -> Result<(), Box<dyn Error>> {
     println!("Torus knot (16), one closed turn, reference vector (-1, 0, 0): angle error at the end\n");
     println!("segments  {}", METHODS.map(|method| format!("{method:^30}")).join("  "));
@@ -42,12 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{segments:>8}  {}", cells.join(" "));
         before = Some(errors);
     }
-    println!(
-        "\n* differs from the published digits. Projection and rotation with 64 segments are misprinted: their published\n  \
-         ratios, 0.579 and 0.737, contradict second order. Runge-Kutta with 64 and 128 segments is 0.8 and 0.4 percent off, of\n  \
-         unknown cause; of rotation with 256 segments the largest error along the curve is published, 4.76E-2, where the end has\n  \
-         4.7548E-2. All other entries agree, but that 7.955E-8 is published cut short, as 7.95E-8.\n"
-    );
+    println!("\n{REMARKS}\n");
     table_five()
 }
 

@@ -1,5 +1,5 @@
-//! The frame of a glass table: a closed rod that touches the glass at three places and the ground at three, along a line each
-//! (figure 7.5 of Zheng's thesis).
+//! The frame of a glass table: a closed rod that touches the glass at three places and the ground at three, along a
+//! line each (figure 7.5 of Zheng's thesis).
 
 use std::{error::Error, f64::consts::TAU};
 

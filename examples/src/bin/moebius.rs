@@ -1,5 +1,5 @@
-//! Rational curves of degree six with rational rotation-minimizing frames along example 1 of Bartoň et al. 2009, with the strips that their
-//! frames sweep (figure 3 there).
+//! Rational curves of degree six with rational rotation-minimizing frames along example 1 of Bartoň et al. 2009, with
+//! the strips that their frames sweep (figure 3 there).
 
 use std::error::Error;
 

@@ -1,5 +1,5 @@
-//! Exact rational profile surfaces along a Pythagorean-hodograph cubic, a moulding and a ruled one, beside what the Frenet frame makes of them
-//! (figures 1 and 7 of Mäurer and Jüttler 1999).
+//! Exact rational profile surfaces along a Pythagorean-hodograph cubic, a moulding and a ruled one, beside what the
+//! Frenet frame makes of them (figures 1 and 7 of Mäurer and Jüttler 1999).
 
 use std::error::Error;
 

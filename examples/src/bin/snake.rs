@@ -1,5 +1,5 @@
-//! A snake modeled along a straight axis and bent along a spine, by rotation-minimizing frames and by Frenet frames (figure 1.1 of Zheng's
-//! thesis).
+//! A snake modeled along a straight axis and bent along a spine, by rotation-minimizing frames and by Frenet frames
+//! (figure 1.1 of Zheng's thesis).
 
 use std::error::Error;
 

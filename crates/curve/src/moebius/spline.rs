@@ -13,8 +13,9 @@ pub struct MoebiusSpline {
 }
 
 impl MoebiusSpline {
-    /// Interpolates points and tangents of `curve` at `segments` equal steps of its parameter: third order in position and
-    /// frame between the joints, fourth at the joints; with [`Tilt::WhenNeeded`] fourth order in position throughout.
+    /// Interpolates points and tangents of `curve` at `segments` equal steps of its parameter: third order in position
+    /// and frame between the joints, fourth at the joints; with [`Tilt::WhenNeeded`] fourth order in position
+    /// throughout.
     ///
     /// # Errors
     /// The first segment without a solution.

@@ -1,8 +1,8 @@
 //! G¹ Hermite interpolation by Pythagorean-hodograph cubics.
 //!
-//! Source: Mäurer and Jüttler 1999, table 1. The absolute values |λ₁| and |λ₂| printed there hold only for λ₁ > 0 > λ₂; with
-//! signed values the quadratic equation holds for all data. Differences of nearly equal tangents are taken first, so that
-//! short arcs keep their digits.
+//! Source: Mäurer and Jüttler 1999, table 1. The absolute values |λ₁| and |λ₂| printed there hold only for λ₁ > 0 > λ₂;
+//! with signed values the quadratic equation holds for all data. Differences of nearly equal tangents are taken first,
+//! so that short arcs keep their digits.
 
 use glam::DVec3;
 
@@ -47,21 +47,21 @@ pub struct HermiteError {
     pub reason: PhCubicError,
 }
 
-/// Tangents that differ by less are parallel. Larger: flat arcs are taken for lines. Smaller: rounding of the tangents passes
-/// as their difference.
+/// Tangents that differ by less are parallel. Larger: flat arcs are taken for lines. Smaller: rounding of the tangents
+/// passes as their difference.
 const PARALLEL: f64 = 1e-14;
 
-/// A chord whose sine against parallel tangents is below this is along them: the curve is a line. Larger: slight S-shapes
-/// become lines. Smaller: lines with rounded coordinates are refused.
+/// A chord whose sine against parallel tangents is below this is along them: the curve is a line. Larger: slight
+/// S-shapes become lines. Smaller: lines with rounded coordinates are refused.
 const ALONG: f64 = 1e-12;
 
 impl PhCubic {
-    /// The cubic from `start` to `end` with the directions of the given tangents: of two solutions that leave and arrive
-    /// in the right direction, the one with the shorter control polygon.
+    /// The cubic from `start` to `end` with the directions of the given tangents: of two solutions that leave and
+    /// arrive in the right direction, the one with the shorter control polygon.
     ///
     /// # Errors
-    /// Bad input, and data without a solution. Most data with strong turning have none; samples of a smooth curve without
-    /// inflection have one as soon as they are dense enough, with an error of fourth order.
+    /// Bad input, and data without a solution. Most data with strong turning have none; samples of a smooth curve
+    /// without inflection have one as soon as they are dense enough, with an error of fourth order.
     pub fn hermite(start: DVec3, end: DVec3, start_tangent: DVec3, end_tangent: DVec3) -> Result<Self, PhCubicError> {
         for vector in [start, end, start_tangent, end_tangent] {
             if !(vector.is_finite() && vector.abs().max_element() <= COORDINATE_LIMIT) {
@@ -90,8 +90,8 @@ impl PhCubic {
 /// Candidates for the lengths (L₁, L₃) of the outer sides of the control polygon, signed along the tangents.
 fn outer_lengths(chord: DVec3, t0: DVec3, t1: DVec3) -> Result<[[f64; 2]; 2], PhCubicError> {
     let sum = t0 + t1;
-    // Sum and difference of unit vectors are normal to each other. Saying so again removes the rounding of the lengths, which
-    // on short arcs is larger than the part of the difference along the curve.
+    // Sum and difference of unit vectors are normal to each other. Saying so again removes the rounding of the lengths,
+    // which on short arcs is larger than the part of the difference along the curve.
     let difference = (t1 - t0) - sum * ((t1 - t0).dot(sum) / sum.length_squared().max(f64::MIN_POSITIVE));
     // 1 − c and 1 + c for c = t₀ · t₁, without cancellation.
     let minus = 0.5 * difference.length_squared();
@@ -106,8 +106,8 @@ fn outer_lengths(chord: DVec3, t0: DVec3, t1: DVec3) -> Result<[[f64; 2]; 2], Ph
         };
     }
     if sum.length() < PARALLEL {
-        // A planar turn by half a circle, where the general equation degenerates: L₁ − L₃ is the chord along t₀ and L₁L₃ the
-        // square of the chord across it.
+        // A planar turn by half a circle, where the general equation degenerates: L₁ − L₃ is the chord along t₀ and
+        // L₁L₃ the square of the chord across it.
         let along = chord.dot(t0);
         let root = libm::hypot(along, 2.0 * chord.reject_from_normalized(t0).length());
         let first = 0.5 * (along + root);

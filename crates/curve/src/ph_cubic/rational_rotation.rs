@@ -1,13 +1,13 @@
 //! Biquadratic rational approximation of the rotation from the Frenet frame to the rotation-minimizing one.
 //!
-//! Source: Mäurer and Jüttler 1999, section 3.4, equations (34) to (41). W ≈ tan(Ω/2), with values and derivatives of Ω exact at
-//! both ends, and one free parameter λ that minimizes the squared error of the angular velocity.
+//! Source: Mäurer and Jüttler 1999, section 3.4, equations (34) to (41). W ≈ tan(Ω/2), with values and derivatives of Ω
+//! exact at both ends, and one free parameter λ that minimizes the squared error of the angular velocity.
 
 use super::PhCubic;
 use crate::quadrature::gauss_points;
 
-/// Panels of the ten-point rule for the squared error. More change I by less than its rounding for rotations below half a
-/// turn.
+/// Panels of the ten-point rule for the squared error. More change I by less than its rounding for rotations below half
+/// a turn.
 const PANELS: usize = 8;
 
 /// Newton steps for λ at most. The clipped iteration takes 5 to 11 on the examples of the paper.
@@ -16,8 +16,8 @@ const STEPS: usize = 60;
 /// First distance of λ from its bound, in units of λ + 2 at the bound. Larger than one leaves the basin of the minimum.
 const START: f64 = 0.1;
 
-/// A biquadratic rational function W = γ/β whose doubled arc tangent approximates the rotation Ω of a [`PhCubic`] from its Frenet
-/// frame to a rotation-minimizing one.
+/// A biquadratic rational function W = γ/β whose doubled arc tangent approximates the rotation Ω of a [`PhCubic`] from
+/// its Frenet frame to a rotation-minimizing one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RationalRotation {
     /// Bernstein coefficients of the numerator γ.
@@ -37,8 +37,8 @@ impl RationalRotation {
     pub const FRENET: Self =
         Self { numerator: [0.0; 3], denominator: [1.0; 3], lambda: 0.0, initial_angle: 0.0, squared_error: 0.0 };
 
-    /// The best approximation for `cubic`, with Ω symmetric about zero: then W has no pole, since Ω stays in (−π, π). What is
-    /// missing to a wanted initial angle is a constant rotation of the profile.
+    /// The best approximation for `cubic`, with Ω symmetric about zero: then W has no pole, since Ω stays in (−π, π).
+    /// What is missing to a wanted initial angle is a constant rotation of the profile.
     pub fn symmetric(cubic: &PhCubic) -> Self {
         Self::with_initial_angle(cubic, -0.5 * cubic.rotation_to(1.0)).unwrap_or(Self::FRENET)
     }
@@ -93,7 +93,8 @@ struct SquaredError {
 }
 
 impl Family {
-    /// Numerator and denominator for λ, scaled to a positive denominator. A falling W has only negative coefficients in (37).
+    /// Numerator and denominator for λ, scaled to a positive denominator. A falling W has only negative coefficients in
+    /// (37).
     fn member(&self, lambda: f64) -> ([f64; 3], [f64; 3]) {
         let (w0, w1, s0, s1) = (self.start, self.end, self.start_slope, self.end_slope);
         let last = (w1 - w0) * (lambda + 2.0) - s0;

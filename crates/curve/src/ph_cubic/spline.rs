@@ -10,11 +10,12 @@ const DEPTH: u32 = 24;
 /// Points of a cubic compared with the curve. Fewer can miss a bulge: the error has at most three between the ends.
 const CHECKS: usize = 9;
 
-/// Turning of the curve over one segment, radians, at most. Larger: few points compare long arcs, and a short cut between
-/// two branches of a knot passes. Smaller: more segments than a loose tolerance needs.
+/// Turning of the curve over one segment, radians, at most. Larger: few points compare long arcs, and a short cut
+/// between two branches of a knot passes. Smaller: more segments than a loose tolerance needs.
 const LARGEST_TURNING: f64 = 1.2;
 
-/// Newton steps that bring a point of the curve opposite to a point of the cubic; the first guess is off by third order.
+/// Newton steps that bring a point of the curve opposite to a point of the cubic; the first guess is off by third
+/// order.
 const NEWTON_STEPS: usize = 8;
 
 /// A curve of [`PhCubic`] segments with continuous tangent.
@@ -94,8 +95,8 @@ impl PhSpline {
         Ok(Self { segments: cubics, parameters, error, closed: curve.is_closed() })
     }
 
-    /// Passes through the points of `spine` with its tangents; its parameters are the stations, and its error is zero, since
-    /// there is nothing between the points to compare with.
+    /// Passes through the points of `spine` with its tangents; its parameters are the stations, and its error is zero,
+    /// since there is nothing between the points to compare with.
     ///
     /// # Errors
     /// The first segment without a cubic.
@@ -161,7 +162,8 @@ impl PhSpline {
         self.segments.iter().map(PhCubic::length).sum()
     }
 
-    /// Exact rotation-minimizing frames with their points, at `samples` equal parameter steps in each segment, and at the end.
+    /// Exact rotation-minimizing frames with their points, at `samples` equal parameter steps in each segment, and at
+    /// the end.
     ///
     /// # Errors
     /// [`FrameError::Reference`] where `reference` is along the first tangent.
@@ -217,7 +219,8 @@ fn between(start: &CurveJet, end: &CurveJet) -> Result<PhCubic, PhCubicError> {
     PhCubic::hermite(start.position, end.position, start.first, end.first)
 }
 
-/// Largest distance of the cubic from the interval of the curve that it follows, both compared in the cubic's normal planes.
+/// Largest distance of the cubic from the interval of the curve that it follows, both compared in the cubic's normal
+/// planes.
 fn deviation(curve: &impl Curve, cubic: &PhCubic, start: f64, end: f64) -> f64 {
     let whole = cubic.length();
     (1..=CHECKS)

@@ -58,8 +58,8 @@ pub struct SurfaceJet {
 }
 
 impl SurfaceJet {
-    /// Cosine of the angle between the parameter lines (equation 43), zero on a profile surface. Zero where the patch is
-    /// singular.
+    /// Cosine of the angle between the parameter lines (equation 43), zero on a profile surface. Zero where the patch
+    /// is singular.
     pub fn orthogonality(&self) -> f64 {
         let lengths = self.du.length() * self.dv.length();
         if lengths == 0.0 { 0.0 } else { self.du.dot(self.dv) / lengths }
@@ -81,12 +81,12 @@ impl RationalPatch {
     /// Degree along the spine of every sweep of a Pythagorean-hodograph cubic.
     pub const SPINE_DEGREE: usize = 9;
 
-    /// The surface that `profile` sweeps along `cubic` with the frame that `rotation` turns out of the Frenet frame: degree 9 along the
-    /// spine. The profile is first turned so that its axes at v = 0 are `initial_angle` away from the Frenet normal and
-    /// binormal.
+    /// The surface that `profile` sweeps along `cubic` with the frame that `rotation` turns out of the Frenet frame:
+    /// degree 9 along the spine. The profile is first turned so that its axes at v = 0 are `initial_angle` away from
+    /// the Frenet normal and binormal.
     ///
-    /// With [`RationalRotation::FRENET`] it is the sweep of the Frenet frame; a straight cubic has a constant frame in its
-    /// place, [`PhCubic::frenet_frame`].
+    /// With [`RationalRotation::FRENET`] it is the sweep of the Frenet frame; a straight cubic has a constant frame in
+    /// its place, [`PhCubic::frenet_frame`].
     pub fn sweep(cubic: &PhCubic, rotation: &RationalRotation, profile: &RationalProfile, initial_angle: f64) -> Self {
         let profile = profile.turned(initial_angle - rotation.initial_angle);
         let hodograph = cubic.sides().map(|side| 3.0 * side);
