@@ -61,10 +61,10 @@ pub(crate) struct Refinement {
 /// what a defect would keep going.
 const MAX_ROUNDS: usize = 40;
 
-/// An edge at rest of this share of the deviation allowed, whose image still deviates, is torn by a jump of the velocity, as on
-/// the medial axis of a thin tool with a profile that acts inside. Larger stops before strong but smooth stretching is followed;
-/// smaller splits more along the tear, to no end.
-const TORN: f64 = 1.0 / 64.0;
+/// An edge at rest of this share of the deviation allowed, whose image still deviates, is torn by a jump of the velocity: on
+/// the medial axis of a concave tool, or of a thin one whose profile acts inside. Larger stops before strong but smooth
+/// stretching is followed; smaller spends ever more triangles along the tear.
+const TORN: f64 = 0.25;
 
 /// A round aims at this share of the volume error allowed, so that what it leaves, being re-estimated on finer triangles, does
 /// not call for one more round that splits a handful. Larger takes more rounds; smaller splits more than asked.
@@ -246,11 +246,11 @@ pub(crate) fn untangle(
     Ok(refinement)
 }
 
-/// Wherever a triangle is split, has its longest edge split too, and so on through the neighbors.
+/// Wherever a triangle is split, has its longest edge at rest split too, and so on through the neighbors.
 ///
 /// Without this a triangle can lose its two shorter edges again and again, its longest always just within the criteria, and
-/// shrink to a sliver along it. With it every split of a triangle is at least a bisection of its longest edge, which keeps
-/// angles bounded (M.-C. Rivara, *Algorithms for refining triangular grids suitable for adaptive and multigrid techniques*,
+/// shrink to a sliver along it, to no end. With it every split of a triangle is at least a bisection of its longest edge, which
+/// keeps the angles at rest bounded (M.-C. Rivara, *Algorithms for refining triangular grids suitable for adaptive and multigrid techniques*,
 /// 1984).
 fn add_longest_edges(
     mesh: &mut Tessellation,
@@ -269,7 +269,7 @@ fn add_longest_edges(
                 continue;
             }
             let Some(midpoints) = mesh.midpoints_of(index) else { continue };
-            let lengths = edge_lengths(&mesh.image_of(index));
+            let lengths = edge_lengths(&mesh.rest_of(index));
             let longest = (0..3).fold(0, |longest, edge| if lengths[edge] > lengths[longest] { edge } else { longest });
             let chosen = &mut is_split[midpoints[longest] as usize];
             has_changed |= !*chosen;
