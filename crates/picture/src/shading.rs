@@ -14,13 +14,13 @@ use crate::picture::PictureError;
 /// Toward the key light, in view coordinates, and the strengths of the lights.
 const KEY: DVec3 = DVec3::new(-0.62, 0.62, 0.48);
 const KEY_LIGHT: f64 = 0.95;
-const HEAD_LIGHT: f64 = 0.18;
+const HEAD_LIGHT: f64 = 0.27;
 const SKY_LIGHT: DVec3 = DVec3::new(0.36, 0.39, 0.44);
 const GROUND_LIGHT: DVec3 = DVec3::new(0.17, 0.14, 0.13);
 
 /// Strength of the highlight, and of the sheen on surfaces seen edge-on.
 const GLOSS: f64 = 0.10;
-const SHEEN: f64 = 0.06;
+const SHEEN: f64 = 0.03;
 
 /// The inside of a surface, seen through a hole in it, has this color whatever its paint.
 const INSIDE: Vec3 = Vec3::new(0.22, 0.26, 0.34);

@@ -1,5 +1,7 @@
 //! Tasks of the workspace: `cargo xtask NAME`.
 
+#![allow(clippy::print_stderr, reason = "tasks speak to whoever started them")]
+
 #[cfg(test)]
 mod arrows;
 mod data;
