@@ -156,6 +156,22 @@ fn nets_are_exact_patches_of_degree_nine() {
 }
 
 #[test]
+fn exact_surfaces_go_to_cad_programs() {
+    let folder = Folder::with(&[("helix.csv", &helix(5)), ("square.csv", &square(0.2))]);
+    let arguments = ["sweep", "helix.csv", "--profile-closed", "--profile", "square.csv", "--output", "a.step"];
+    folder.run(&arguments).expect(0);
+    let text = String::from_utf8(folder.read("a.step")).unwrap();
+    assert!(text.starts_with("ISO-10303-21;\n") && text.trim_end().ends_with("END-ISO-10303-21;"));
+    // Four segments of four sides: faces, edges across the five joints and along the four corners, corners.
+    for (entity, count) in [("RATIONAL_B_SPLINE_SURFACE", 16), ("EDGE_CURVE", 5 * 4 + 4 * 4), ("VERTEX_POINT", 5 * 4)] {
+        assert_eq!(text.matches(&format!("{entity}(")).count(), count, "{entity}");
+    }
+    assert_eq!(text.matches("B_SPLINE_SURFACE(1, 9,").count(), 16, "the degrees of profile and curve");
+    folder.run(&arguments).expect(0);
+    assert_eq!(folder.read("a.step"), text.as_bytes(), "the same file again");
+}
+
+#[test]
 fn bad_curves_are_named_by_row() {
     let rows = |text: &str| text.replace(' ', "\n");
     for (curve, arguments, words) in [
@@ -194,7 +210,7 @@ fn bad_sweeps_are_refused() {
     for (arguments, words) in [
         (&["--profile", "one.csv", "-o", "a.obj"][..], &["one.csv", "at least 2 rows"][..]),
         (&["--profile", "curve.csv", "-o", "a.obj"], &["curve.csv", "row 1 has 3 columns, not 2"]),
-        (&["--profile", "profile.csv", "-o", "a.step"], &["a.step", "known are"]),
+        (&["--profile", "profile.csv", "-o", "a.iges"], &["a.iges", "known are"]),
         (&["--profile", "profile.csv", "-o", "a.obj", "--caps"], &["--caps", "--profile-closed"]),
         (&["--profile", "profile.csv", "-o", "a.json", "--method", "rotation"], &["--method ph"]),
         (&["--profile", "profile.csv", "-o", "a.json", "--twist", "1"], &["--twist", "write a mesh"]),

@@ -118,7 +118,8 @@ pub struct SweepArguments {
     #[arg(long, value_name = "PROFILE.csv")]
     pub profile: PathBuf,
 
-    /// Surface: a mesh (.obj .gltf .glb .ply .stl .off), or exact rational patches of degree 9 along the curve (.json)
+    /// Surface: a mesh (.obj .gltf .glb .ply .stl .off), or exact rational patches of degree 9 along the curve (.json
+    /// .step .stp)
     #[arg(long, short, value_name = "SURFACE")]
     pub output: PathBuf,
 
@@ -142,7 +143,7 @@ pub struct SpineArguments {
     #[arg(value_name = "CURVE.csv")]
     pub curve: PathBuf,
 
-    /// How frames are carried [default: double-reflection; ph for a net]
+    /// How frames are carried [default: double-reflection; ph for exact surfaces]
     #[arg(long, value_enum)]
     pub method: Option<Method>,
 

@@ -1,13 +1,14 @@
 //! `isochore sweep`: the surface that a profile sweeps along a curve, as a mesh or as an exact rational net.
 
+use std::path::Path;
+
 use glam::{DVec2, DVec3};
-use isochore_curve::{RationalPatch, RationalProfile, RationalRotation, sweep as sweep_grid};
+use isochore_curve::{RationalProfile, sweep as sweep_grid};
 use isochore_mesh::{GridMesh, TriMesh, io};
-use serde::Serialize;
 
 use crate::{
     Outcome,
-    arguments::{Method, SweepArguments, Twist},
+    arguments::{SweepArguments, Twist},
     command_error::CommandError,
     console::Console,
     csv_table::CsvTable,
@@ -16,12 +17,34 @@ use crate::{
     staging::Staging,
 };
 
+mod net;
+mod step;
+
+use net::Net;
+
+/// Formats that hold the surface itself.
+#[derive(Debug, Clone, Copy)]
+enum Exact {
+    Json,
+    Step,
+}
+
+impl Exact {
+    fn of_path(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "json" => Some(Self::Json),
+            "step" | "stp" => Some(Self::Step),
+            _ => None,
+        }
+    }
+}
+
 /// Points of a Bézier profile on a mesh.
 const BEZIER_POINTS: usize = 33;
 
 pub(crate) fn sweep(arguments: &SweepArguments, console: &Console) -> Result<Outcome, CommandError> {
-    let is_net = arguments.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
-    if !is_net && io::Format::of_path(&arguments.output).is_none() {
+    let exact = Exact::of_path(&arguments.output);
+    if exact.is_none() && io::Format::of_path(&arguments.output).is_none() {
         let path = arguments.output.clone();
         return Err(io::WriteError::UnknownFormat { path }.into());
     }
@@ -29,17 +52,16 @@ pub(crate) fn sweep(arguments: &SweepArguments, console: &Console) -> Result<Out
     let draft = staging.add_file(&arguments.output)?;
     let profile = Profile::read(arguments)?;
     let spine = SpineFile::read(&arguments.spine)?;
-    if is_net {
-        let net = net(arguments, &spine, &profile)?;
-        staging.write(&draft, format!("{}\n", crate::console::to_json(&net)).as_bytes())?;
+    if let Some(format) = exact {
+        let net = Net::new(arguments, &spine, profile.curves(), profile.is_closed)?;
+        let text = match format {
+            Exact::Json => net.to_json(),
+            Exact::Step => step::to_step(&net, &arguments.output),
+        };
+        staging.write(&draft, text.as_bytes())?;
         staging.commit()?;
         console.finish();
-        let [along, across] = [net.degree_v, net.degree_u];
-        console.say(format_args!(
-            "{}: {} patches of degree {along} along the curve and {across} along the profile",
-            arguments.output.display(),
-            net.patches.len()
-        ));
+        console.say(format_args!("{}: {net}", arguments.output.display()));
         return Ok(Outcome::Done);
     }
     let mesh = mesh(arguments, &spine, &profile)?;
@@ -145,75 +167,6 @@ fn mesh(arguments: &SweepArguments, spine: &SpineFile, profile: &Profile) -> Res
         columns_close: profile.is_closed,
     };
     Ok(if arguments.caps { grid.capped_mesh(&points) } else { grid.mesh() })
-}
-
-/// Rational tensor-product Bézier patches, for programs that read exact surfaces.
-#[derive(Debug, Clone, Serialize)]
-struct Net {
-    kind: &'static str,
-    /// Degree along the profile.
-    degree_u: usize,
-    /// Degree along the curve.
-    degree_v: usize,
-    patches: Vec<Patch>,
-}
-
-/// One patch over [0, 1]².
-#[derive(Debug, Clone, Serialize)]
-struct Patch {
-    /// Segment of the curve.
-    segment: usize,
-    /// Curve of the profile.
-    side: usize,
-    /// Control points [x, y, z, weight], not multiplied by their weight; index [u][v].
-    control_points: Vec<Vec<[f64; 4]>>,
-}
-
-/// The surface of degree 9 along the curve over splines of Pythagorean-hodograph cubics.
-fn net(arguments: &SweepArguments, spine: &SpineFile, profile: &Profile) -> Result<Net, CommandError> {
-    refuse_for_net(arguments)?;
-    let spline = spine.ph_spline()?;
-    let reference = spine.reference(&arguments.spine);
-    let frames = spline.exact_frames(reference, 1).map_err(|error| CommandError::Usage(format!("--r0: {error}")))?;
-    let curves = profile.curves();
-    let mut patches = Vec::new();
-    for (segment, cubic) in spline.segments().iter().enumerate() {
-        let rotation = RationalRotation::symmetric(cubic);
-        // The profile stands where the exact frame does at the start of the segment.
-        let angle = cubic.frenet_frame(0.0).angle_to(frames[segment].1.r);
-        for (side, curve) in curves.iter().enumerate() {
-            let patch = RationalPatch::sweep(cubic, &rotation, curve, angle);
-            patches.push(Patch { segment, side, control_points: rows(&patch) });
-        }
-    }
-    Ok(Net {
-        kind: "rational Bézier patches",
-        degree_u: curves[0].control_points.len() - 1,
-        degree_v: RationalPatch::SPINE_DEGREE,
-        patches,
-    })
-}
-
-/// What a rational net cannot have.
-fn refuse_for_net(arguments: &SweepArguments) -> Result<(), CommandError> {
-    let spine = &arguments.spine;
-    let problem = if spine.method.is_some_and(|method| method != Method::Ph) {
-        "a net (.json) is exact for Pythagorean-hodograph cubics alone: take --method ph, or write a mesh"
-    } else if spine.twist.is_some_and(|twist| twist != Twist::None) {
-        "a net (.json) has rotation-minimizing frames, which --twist would change; write a mesh"
-    } else if arguments.caps {
-        "a net (.json) has no caps; write a mesh"
-    } else if spine.samples_per_segment.is_some() {
-        "a net (.json) is not sampled: leave out --samples-per-segment"
-    } else {
-        return Ok(());
-    };
-    Err(CommandError::Usage(problem.to_owned()))
-}
-
-fn rows(patch: &RationalPatch) -> Vec<Vec<[f64; 4]>> {
-    let point = |h: &glam::DVec4| (h.truncate() / h.w).extend(h.w).to_array();
-    patch.control_points.chunks(patch.spine_degree + 1).map(|row| row.iter().map(point).collect()).collect()
 }
 
 #[cfg(test)]
