@@ -17,7 +17,8 @@ type Shell = CompressedShell<Point3, NurbsCurve<Vector4>, NurbsSurface<Vector4>>
 
 /// The surface as one open shell, in which neighboring faces share their edges.
 ///
-/// Numbers below a hundredth are written with eleven digits, larger ones with all.
+/// Model units are written as millimeters, since STEP wants a unit; numbers below a hundredth have eleven digits, larger
+/// ones all.
 pub(super) fn to_step(net: &Net, path: &Path) -> String {
     let shell = shell(net);
     let header = StepHeaderDescriptor {
