@@ -15,7 +15,10 @@ const RECIPE: &str = include_str!("demo/press.toml");
 const RECIPE_NAME: &str = "press.toml";
 
 /// The meshes that the recipe names.
-const MESHES: [(&str, &[u8]); 0] = [];
+const MESHES: [(&str, &[u8]); 2] = [
+    ("planet.obj", include_bytes!("../../../data/planet.obj")),
+    ("knight.obj", include_bytes!("../../../data/knight.obj")),
+];
 
 pub(crate) fn demo(arguments: &DemoArguments, console: &Console) -> Result<Outcome, CommandError> {
     let start = Instant::now();

@@ -246,12 +246,12 @@ pub(crate) fn untangle(
     Ok(refinement)
 }
 
-/// Wherever a triangle is split, has its longest edge at rest split too, and so on through the neighbors.
+/// Wherever a triangle is split, has the longest edge of its image split too, and so on through the neighbors: a bisection at
+/// least, as M.-C. Rivara, *Algorithms for refining triangular grids suitable for adaptive and multigrid techniques*, 1984.
 ///
 /// Without this a triangle can lose its two shorter edges again and again, its longest always just within the criteria, and
-/// shrink to a sliver along it, to no end. With it every split of a triangle is at least a bisection of its longest edge, which
-/// keeps the angles at rest bounded (M.-C. Rivara, *Algorithms for refining triangular grids suitable for adaptive and multigrid techniques*,
-/// 1984).
+/// shrink to a sliver along it, to no end. Where the image is so stretched that this happens at rest all the same, the longest
+/// edge at rest is split.
 fn add_longest_edges(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
@@ -269,7 +269,11 @@ fn add_longest_edges(
                 continue;
             }
             let Some(midpoints) = mesh.midpoints_of(index) else { continue };
-            let lengths = edge_lengths(&mesh.rest_of(index));
+            let lengths = if mesh.is_sliver_at_rest(index) {
+                edge_lengths(&mesh.rest_of(index))
+            } else {
+                edge_lengths(&mesh.image_of(index))
+            };
             let longest = (0..3).fold(0, |longest, edge| if lengths[edge] > lengths[longest] { edge } else { longest });
             let chosen = &mut is_split[midpoints[longest] as usize];
             has_changed |= !*chosen;

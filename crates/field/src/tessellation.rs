@@ -12,6 +12,10 @@ use crate::{Stroke, facet_error::edge_lengths, flow};
 /// The edge's midpoint is not followed.
 const UNTRACKED: u32 = u32::MAX;
 
+/// A triangle whose height is less than this share of its longest edge is a sliver. Larger takes what the image needs long
+/// and thin at rest for slivers; smaller lets real ones get thinner before they are halved.
+const SLIVER: f64 = 0.03;
+
 /// A mesh at rest, its image, and the midpoints of those edges that are followed through the flow.
 #[derive(Debug, Clone)]
 pub(crate) struct Tessellation {
@@ -123,6 +127,13 @@ impl Tessellation {
     /// Corners of a triangle at rest.
     pub(crate) fn rest_of(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].vertices.map(|vertex| self.rest[vertex as usize])
+    }
+
+    /// Whether a triangle at rest is much lower than long.
+    pub(crate) fn is_sliver_at_rest(&self, triangle: usize) -> bool {
+        let [a, b, c] = self.rest_of(triangle);
+        let longest = self.longest_rest_edge(triangle);
+        (b - a).cross(c - a).length() < SLIVER * longest * longest
     }
 
     /// Length at rest of the longest edge of a triangle.
