@@ -34,3 +34,7 @@ pub use refine::RefineOptions;
 pub use rigid_field::{RigidField, VelocityBlock};
 pub use stroke::{Bend, Move, Stroke, StrokeError, Twist};
 pub use tool::{Tool, ToolError};
+
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
