@@ -3,14 +3,13 @@
 use std::time::Instant;
 
 use glam::DVec3;
-use isochore_mesh::{Cancelled, ClosedMesh, MeshError, Monitor, TriMesh};
+use isochore_mesh::{Cancelled, ClosedMesh, MeshError, Monitor, TriMesh, signed_volume};
 
 use crate::{
     Note, Receipt, RefineOptions, Stroke, StrokeReceipt,
     lock::lock_volume,
     refine::{Criteria, Refinement, refine, resolve_field, untangle},
     tessellation::Tessellation,
-    volume::signed_volume,
 };
 
 /// How to deform.

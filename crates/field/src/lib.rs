@@ -23,7 +23,6 @@ mod rk4;
 mod stroke;
 mod tessellation;
 mod tool;
-mod volume;
 
 pub use deform::{DeformError, DeformOptions, Deformed, deform};
 pub use flow::flow_points;

@@ -40,7 +40,7 @@ pub use compensated_sum::{CompensatedSum, sum_terms};
 pub use distance::Distance;
 pub use distance_field::{DistanceField, DistanceFieldError, DistanceFieldOptions, Grid, Padding};
 pub use grid_mesh::GridMesh;
-pub use measure::{Components, EdgeLengths};
+pub use measure::{Components, EdgeLengths, signed_volume};
 pub use mesh_distance::MeshDistance;
 pub use monitor::{Cancelled, Monitor, Silent};
 pub use self_intersection::{SelfIntersectionError, SelfIntersections};

@@ -25,6 +25,19 @@ pub struct Components {
     pub of_triangle: Vec<u32>,
 }
 
+/// Signed volume inside `triangles`, which index `positions`; see [`TriMesh::volume`].
+///
+/// # Panics
+/// If an index is out of range.
+pub fn signed_volume(positions: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+    let frame = Frame::of(positions);
+    let [six_volumes] = sum_terms(triangles.len(), |triangle| {
+        let [a, b, c] = triangles[triangle].map(|vertex| frame.local(positions[vertex as usize]));
+        [a.dot(b.cross(c))]
+    });
+    frame.world_volume(six_volumes / 6.0)
+}
+
 /// Measures panic where an index is out of range; [`TriMesh::check`] finds such triangles.
 impl TriMesh {
     /// The smallest box that holds all vertices.
@@ -37,17 +50,12 @@ impl TriMesh {
     /// The sum of the tetrahedra between the triangles and the center of [`bounds`](Self::bounds), compensated, with
     /// the same bits for any number of threads. For an open mesh it depends on that center and means little.
     pub fn volume(&self) -> f64 {
-        let frame = Frame::of(self);
-        let [six_volumes] = sum_terms(self.triangles.len(), |triangle| {
-            let [a, b, c] = self.corners(triangle).map(|corner| frame.local(corner));
-            [a.dot(b.cross(c))]
-        });
-        frame.world_volume(six_volumes / 6.0)
+        signed_volume(&self.positions, &self.triangles)
     }
 
     /// Centroid of the volume inside the surface; the center of the bounds where there is no volume to speak of.
     pub fn volume_centroid(&self) -> DVec3 {
-        let frame = Frame::of(self);
+        let frame = Frame::of(&self.positions);
         let [six_volumes, x, y, z] = sum_terms(self.triangles.len(), |triangle| {
             let [a, b, c] = self.corners(triangle).map(|corner| frame.local(corner));
             let six_volume = a.dot(b.cross(c));
@@ -62,7 +70,7 @@ impl TriMesh {
 
     /// Area of all triangles, square model units.
     pub fn area(&self) -> f64 {
-        let frame = Frame::of(self);
+        let frame = Frame::of(&self.positions);
         let [twice_area] = sum_terms(self.triangles.len(), |triangle| {
             let [a, b, c] = self.corners(triangle).map(|corner| frame.local(corner));
             [(b - a).cross(c - a).length()]
@@ -76,7 +84,7 @@ impl TriMesh {
         if edges.is_empty() {
             return None;
         }
-        let frame = Frame::of(self);
+        let frame = Frame::of(&self.positions);
         let length = |edge: usize| {
             let [a, b] = edges[edge].map(|vertex| self.positions[vertex as usize]);
             ((b - a) / frame.scale).length()
@@ -148,8 +156,8 @@ struct Frame {
 }
 
 impl Frame {
-    fn of(mesh: &TriMesh) -> Self {
-        let bounds = mesh.bounds();
+    fn of(positions: &[DVec3]) -> Self {
+        let bounds = Aabb::of(positions.iter().copied());
         let center = 0.5 * bounds.min + 0.5 * bounds.max;
         let reach = (0.5 * bounds.max - 0.5 * bounds.min).max_element();
         if !(reach > 0.0 && reach.is_finite()) {
