@@ -20,6 +20,10 @@ pub(crate) struct Lock {
 /// leaves volume behind.
 const RESIDUAL: f64 = 1e-15;
 
+/// Where rounding keeps Newton's method from [`RESIDUAL`], a root this good will do. Larger lets vertices be moved towards no
+/// root at all; smaller refuses what rounding allows.
+const ACCEPTED_RESIDUAL: f64 = 1e-13;
+
 /// Newton's method on a cubic that is nearly linear doubles its digits each time: five to reach f64's, the rest for safety.
 const MAX_ITERATIONS: usize = 60;
 
@@ -28,7 +32,7 @@ const MAX_ITERATIONS: usize = 60;
 const LEAST_SLOPE: f64 = 1e-9;
 
 /// Moves `image` so that its volume is `volume`. None, and nothing moved, when nothing had moved or the displacement has no
-/// hold on the volume.
+/// hold on the volume, so that no root brings it back.
 pub(crate) fn lock_volume(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], volume: f64) -> Option<Lock> {
     let directions = directions(rest, image, triangles)?;
     let mut total = 0.0;
@@ -36,10 +40,11 @@ pub(crate) fn lock_volume(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32
     let unlocked = image.to_vec();
     for _ in 0..2 {
         let [c0, c1, c2, c3] = volume_cubic(image, &directions, triangles);
-        if c1.abs() <= LEAST_SLOPE * volume.abs() {
+        let has_hold = c1.abs() > LEAST_SLOPE * volume.abs();
+        let Some(lambda) = has_hold.then(|| root(c0 - volume, c1, c2, c3, volume.abs())).flatten() else {
+            image.copy_from_slice(&unlocked);
             return None;
-        }
-        let lambda = root(c0 - volume, c1, c2, c3, RESIDUAL * volume.abs())?;
+        };
         total += lambda;
         for index in 0..image.len() {
             // Adding zero would turn a coordinate of −0 into +0.
@@ -106,15 +111,34 @@ fn volume_cubic(positions: &[DVec3], directions: &[DVec3], triangles: &[[u32; 3]
     })
 }
 
-/// The root of c0 + c1 λ + c2 λ² + c3 λ³ that Newton's method reaches from zero, to an absolute residual.
-fn root(c0: f64, c1: f64, c2: f64, c3: f64, residual: f64) -> Option<f64> {
+/// The root of c0 + c1 λ + c2 λ² + c3 λ³ that Newton's method reaches from zero, to a residual that is a share of `size`; none
+/// where it reaches none.
+fn root(c0: f64, c1: f64, c2: f64, c3: f64, size: f64) -> Option<f64> {
+    let residual = |lambda: f64| c0 + lambda * (c1 + lambda * (c2 + lambda * c3));
     let mut lambda = 0.0;
     for _ in 0..MAX_ITERATIONS {
-        let value = c0 + lambda * (c1 + lambda * (c2 + lambda * c3));
-        if value.abs() <= residual {
-            return Some(lambda);
+        if residual(lambda).abs() <= RESIDUAL * size {
+            break;
         }
-        lambda -= value / (c1 + lambda * (2.0 * c2 + lambda * 3.0 * c3));
+        lambda -= residual(lambda) / (c1 + lambda * (2.0 * c2 + lambda * 3.0 * c3));
     }
-    lambda.is_finite().then_some(lambda)
+    (residual(lambda).abs() <= ACCEPTED_RESIDUAL * size).then_some(lambda)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_root_is_found() {
+        let (c0, c1, c2, c3) = (0.02, 1.0, 0.3, 0.1);
+        let lambda = root(c0, c1, c2, c3, 1.0).unwrap();
+        assert!((c0 + lambda * (c1 + lambda * (c2 + lambda * c3))).abs() <= RESIDUAL);
+    }
+
+    #[test]
+    fn what_has_no_root_moves_nothing() {
+        assert_eq!(root(1.0, 0.1, 1.0, 0.0, 1.0), None);
+        assert_eq!(root(1.0, 0.0, 0.0, 0.0, 1.0), None);
+    }
 }
