@@ -53,6 +53,9 @@ pub enum DeformError {
         /// Index of the vertex, inserted ones included.
         vertex: usize,
     },
+    /// The volume of the mesh as given is no number.
+    #[error("the volume is beyond the range of numbers; coordinates are too large")]
+    VolumeOverflow,
 }
 
 /// A lock that moves a vertex by more than this share of the shortest edge at it may fold triangles. Larger stays silent when
@@ -81,6 +84,9 @@ pub fn deform(
 ) -> Result<Deformed, DeformError> {
     mesh.check_valid()?;
     let volume_before = ClosedMesh::new(mesh).is_ok().then(|| signed_volume(&mesh.positions, &mesh.triangles));
+    if volume_before.is_some_and(|volume| !volume.is_finite()) {
+        return Err(DeformError::VolumeOverflow);
+    }
     let mut receipt = Receipt { volume_before, ..Receipt::default() };
     let mut tessellation = Tessellation::new(mesh);
     let criteria = options.refine.as_ref().map(|refine| Criteria::new(refine, &tessellation, volume_before));
@@ -103,9 +109,9 @@ pub fn deform(
         let bare = signed_volume(&tessellation.image, &triangles);
         receipt.volume_before_lock = Some(bare);
         receipt.facet_error = Some(facet_error);
-        let share = (facet_error / volume).abs().max((bare / volume - 1.0).abs());
-        if share > NOTABLE_FACET_ERROR {
-            receipt.notes.push(Note::FacetError { share });
+        if let Some(change) = relative_change(volume, bare) {
+            let share = change.abs().max((facet_error / volume).abs());
+            receipt.notes.extend((share > NOTABLE_FACET_ERROR).then_some(Note::FacetError { share }));
         }
     }
     if options.lock {
@@ -145,8 +151,10 @@ fn apply(
     let evaluations = mesh.advance(stroke, monitor)?;
     let advect_end = Instant::now();
     let moved = count_different(&before, &mesh.image);
+    let known = before.len();
     drop(before);
     let refined = refine(mesh, strokes, criteria, monitor)?;
+    let moved = moved + count_different(&mesh.rest[known..], &mesh.image[known..]);
     let end = Instant::now();
 
     receipt.seconds.advect += (advect_end - resolve_end).as_secs_f64();
@@ -158,11 +166,12 @@ fn apply(
     receipt.strokes.push(StrokeReceipt {
         seconds: (end - begin).as_secs_f64(),
         evaluations: resolved.evaluations + evaluations + refined.evaluations,
-        moved: moved + refined.inserted,
+        moved,
         inserted: resolved.inserted + refined.inserted,
         volume_change: receipt
             .volume_before
-            .map(|volume| signed_volume(&mesh.image, &mesh.indices()) / volume - 1.0 - volume_so_far),
+            .and_then(|volume| relative_change(volume, signed_volume(&mesh.image, &mesh.indices())))
+            .map(|change| change - volume_so_far),
     });
     Ok(refined.facet_error)
 }
@@ -198,6 +207,11 @@ fn lock(mesh: &mut Tessellation, triangles: &[[u32; 3]], receipt: &mut Receipt) 
     };
     receipt.notes.extend(note);
     receipt.seconds.lock = begin.elapsed().as_secs_f64();
+}
+
+/// Signed change of a volume as a share of its size, which a mesh inside out has too; none where there is no volume.
+fn relative_change(before: f64, after: f64) -> Option<f64> {
+    (before != 0.0).then(|| (after - before) / before.abs())
 }
 
 fn count_different(before: &[DVec3], after: &[DVec3]) -> usize {

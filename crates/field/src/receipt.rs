@@ -36,11 +36,11 @@ pub struct StrokeReceipt {
     pub seconds: f64,
     /// Evaluations of the fields, those for refinement included.
     pub evaluations: u64,
-    /// Vertices that this stroke moved, inserted ones included.
+    /// Vertices that this stroke moved; of those inserted after it, the ones that any stroke so far moved.
     pub moved: usize,
     /// Vertices that refinement inserted for this stroke.
     pub inserted: usize,
-    /// Signed change of the volume by this stroke, as a share of the volume at rest.
+    /// Signed change of the volume by this stroke, as a share of the volume at rest; none where that is zero.
     pub volume_change: Option<f64>,
 }
 

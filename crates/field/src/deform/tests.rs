@@ -211,3 +211,37 @@ fn points_alone_flow_as_the_vertices_do() {
     let points = crate::flow_points(&sphere.positions, &strokes, &Silent).unwrap();
     assert_eq!(points, deformed.mesh.positions[..points.len()]);
 }
+
+#[test]
+fn a_stroke_counts_the_vertices_that_moved_and_no_others() {
+    let receipt = run(&primitives::icosphere(1.0, 3), &[press(0.125)], &REFINED).receipt;
+    assert!(receipt.inserted_vertices > 100);
+    assert_eq!(receipt.strokes[0].moved, receipt.moved_vertices);
+}
+
+#[test]
+fn volume_changes_of_a_mesh_inside_out_are_those_of_the_mesh_with_the_sign_turned() {
+    let sphere = primitives::icosphere(1.0, 3);
+    let mut turned = sphere.clone();
+    turned.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    let [change, turned] =
+        [sphere, turned].map(|mesh| run(&mesh, &[press(0.125)], &BARE).receipt.strokes[0].volume_change.unwrap());
+    // Rounding of two sums over a thousand triangles.
+    assert!(change > 1e-3 && (change + turned).abs() < 1e-13, "{change} {turned}");
+}
+
+#[test]
+fn two_sides_without_a_volume_deform_without_one() {
+    let positions = vec![DVec3::new(-1.0, -1.0, 0.9), DVec3::new(1.0, -1.0, 0.9), DVec3::new(0.0, 1.5, 0.9)];
+    let sheet = TriMesh::new(positions, vec![[0, 1, 2], [0, 2, 1]]);
+    let deformed = run(&sheet, &[press(0.125)], &DeformOptions::default());
+    assert_eq!(deformed.receipt.strokes[0].volume_change, None);
+    assert!(deformed.receipt.max_displacement > 0.1);
+    assert!(deformed.mesh.positions.iter().all(|position| position.is_finite()));
+}
+
+#[test]
+fn a_volume_beyond_all_numbers_is_refused() {
+    let sphere = primitives::icosphere(1e150, 2);
+    assert_eq!(deform(&sphere, &[], &BARE, &Silent).unwrap_err(), DeformError::VolumeOverflow);
+}
