@@ -337,3 +337,30 @@ fn cross_of_independent(a: DVec3, b: DVec3) -> Option<DVec3> {
     // Ten thousand times rounding: below it the direction of the product is noise.
     if normal.length() > 1e-12 { Some(normal.normalize()) } else { None }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::TrigonometricCurve;
+
+    /// Figure 2 of the paper: symmetry about the middle of a helix segment makes the planar tangents parallel, and no
+    /// cubic has an inflection.
+    #[test]
+    fn published_centers_make_an_inflection_of_every_part_of_a_helix() {
+        let helix = TrigonometricCurve::helix(1.0, 0.5, (0.0, std::f64::consts::PI));
+        for (start, half_turns) in [(0.0, 0.5), (0.5, 0.5), (0.0, 0.1), (0.2, 0.7)] {
+            let [start, end] = [start, start + half_turns].map(|at| helix.jet(std::f64::consts::PI * at));
+            let ends = Ends::new(start.position, end.position, start.first, end.first).unwrap();
+            let center = ends.opposite_center();
+            let angles = ends
+                .image_tangents(&center)
+                .map(|tangent| libm::atan2(center.normal.dot(ends.chord.cross(tangent)), ends.chord.dot(tangent)));
+            assert!((angles[0] - angles[1]).abs() < 1e-13, "parallel: {angles:?}");
+            if half_turns == 0.5 {
+                // Given to nine digits.
+                assert!((angles[0] + 0.084_001_077_4).abs() < 5.1e-11, "{angles:?}");
+            }
+            assert!(ends.segment(&center).is_err());
+        }
+    }
+}
