@@ -305,6 +305,16 @@ fn splines_converge_with_fourth_order_in_position_and_frame() {
     assert!((ratio - 0.0625).abs() < 2e-3, "{ratio}");
 }
 
+/// Theorem 10 on a helix: three digits given.
+#[test]
+fn positions_on_a_helix_have_the_golden_errors() {
+    let helix = TrigonometricCurve::helix(1.0, 0.5, (0.0, 4.0));
+    for (segments, expected, unit) in [(16, 1.02e-5, 1e-7), (256, 1.55e-10, 1e-12)] {
+        let error = PhSpline::interpolate(&helix, segments).unwrap().error();
+        assert!((error - expected).abs() < 0.51 * unit, "{segments}: {error:e}");
+    }
+}
+
 #[test]
 fn hopeless_curves_are_refused() {
     let knot = TrigonometricCurve::torus_knot();

@@ -6,8 +6,9 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 use isochore_curve::{
     Curve, DegenerateSegment, Frame, FrameMethod, Spine, TrigonometricCurve, TwistConstraint, TwistError, TwistLaw,
-    close_frames, closing_angle, exact_frames, meet_constraints, meet_end_direction, rotation_minimizing_frames,
-    spread, total_angular_speed, total_curvature, total_squared_angular_speed, twist_shares, uniform_parameters,
+    close_frames, closing_angle, exact_frames, length, meet_constraints, meet_end_direction,
+    rotation_minimizing_frames, spread, total_angular_speed, total_curvature, total_squared_angular_speed,
+    total_squared_curvature, twist_shares, uniform_parameters,
 };
 
 fn reflected(curve: &impl Curve, segments: usize) -> (Spine, Vec<Frame>) {
@@ -92,6 +93,8 @@ fn each_law_minimizes_its_own_functional() {
         // Closed forms of the minima in the total curvature and the whole twist.
         let twist = -2.87571199786589409 + TAU * f64::from(turns);
         assert!((libm::hypot(total_curvature(&torus), twist) - least).abs() < 1e-12);
+        let squared = total_squared_curvature(&torus) + twist * twist / length(&torus);
+        assert!((squared - least_squared).abs() < 1e-12, "{squared}");
     }
 }
 
