@@ -109,6 +109,9 @@ pub fn total_squared_curvature(curve: &impl Curve) -> f64 {
 }
 
 /// ∫ τ ds over `curve`, radians. Meaningful only where the curvature never vanishes.
+///
+/// Where it nearly vanishes the torsion has a peak narrower than quadrature resolves, and part of it is missed; the closing
+/// angle of rotation-minimizing frames has no such trouble.
 pub fn total_torsion(curve: &impl Curve) -> f64 {
     along(curve, |u| {
         let jet = curve.jet(u);
