@@ -109,7 +109,8 @@ impl Staging {
             let cannot = |error: io::Error| CommandError::cannot("write", target, &error);
             let mut step = Step::RemoveFile(target.clone());
             if let Ok(metadata) = fs::metadata(target) {
-                let kept = draft.with_extension("previous");
+                // Beside the room of the draft: in it, an output may have any name, this one too.
+                let kept = parent(draft).with_extension("previous");
                 // Linked, not moved, so that there is no moment without a file; copied where there are no links.
                 fs::hard_link(target, &kept).or_else(|_| fs::copy(target, &kept).map(drop)).map_err(cannot)?;
                 fs::set_permissions(draft, metadata.permissions()).map_err(cannot)?;
@@ -211,6 +212,21 @@ mod tests {
         staging.commit().unwrap();
         assert_eq!(names(folder.path()), ["a.txt", "frames"]);
         assert_eq!(names(&frames), ["b.txt"]);
+    }
+
+    #[test]
+    fn a_file_of_any_name_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        // Whatever the file that was there before is kept as must not meet the new one.
+        for name in ["a", "a.txt", ".previous", "a.previous", "0.previous"] {
+            let target = folder.path().join(name);
+            fs::write(&target, "old").unwrap();
+            let mut staging = Staging::new(&Interrupt::default());
+            let draft = staging.add_file(&target).unwrap();
+            staging.write(&draft, b"new").unwrap();
+            staging.commit().unwrap();
+            assert_eq!(fs::read(&target).unwrap(), b"new", "{name}");
+        }
     }
 
     #[test]
