@@ -92,6 +92,9 @@ fn open_target_with_a_promise_on_its_volume() {
     let mesh = "mesh = \"open.obj\"\n[promise]\nvolume = 0.1";
     let shape = "shape = { kind = \"icosphere\", radius = 1.0, subdivisions = 3 }";
     refuse(shape, mesh, &[("open.obj", &open)], &["promise.volume", "no volume", "edge", "remove this promise"]);
+
+    let sheet = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n";
+    refuse(shape, mesh, &[("open.obj", sheet)], &["promise.volume", "no volume", "it is zero"]);
 }
 
 #[test]

@@ -43,11 +43,15 @@ impl Scene {
     pub fn build(recipe: &Recipe, meshes: &Meshes, monitor: &dyn Monitor) -> Result<Self, ReplayError> {
         recipe.validate()?;
         let target = target(&recipe.target, meshes)?;
-        if recipe.promise.volume.is_some()
-            && let Err(defect) = ClosedMesh::new(&target)
-        {
-            let text = format!("the target encloses no volume ({defect}); close it, or remove this promise");
-            return Err(RecipeError::new("promise.volume", RecipeProblem::Other(text)).into());
+        if recipe.promise.volume.is_some() {
+            let defect = match ClosedMesh::new(&target) {
+                Ok(closed) => (closed.volume() == 0.0).then(|| "it is zero".to_owned()),
+                Err(defect) => Some(defect.to_string()),
+            };
+            if let Some(defect) = defect {
+                let text = format!("the target encloses no volume ({defect}); close it, or remove this promise");
+                return Err(RecipeError::new("promise.volume", RecipeProblem::Other(text)).into());
+            }
         }
         let mut workshop = Workshop { recipe, meshes, monitor, warnings: Vec::new() };
         let start = Instant::now();
