@@ -54,7 +54,9 @@ impl CommandError {
             return Self::Usage("no command given; see `isochore --help`, or start with `isochore demo`".to_owned());
         }
         let text = error.to_string();
-        let paragraphs = text.split("\n\n").take_while(|paragraph| !paragraph.starts_with("Usage:"));
+        let paragraphs = text
+            .split("\n\n")
+            .take_while(|paragraph| !["Usage:", "For more information"].iter().any(|end| paragraph.starts_with(end)));
         let words: Vec<&str> = paragraphs.flat_map(str::split_whitespace).collect();
         let text = words.join(" ");
         let text = text.strip_prefix("error: ").unwrap_or(&text);

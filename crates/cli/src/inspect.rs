@@ -67,7 +67,10 @@ impl std::fmt::Display for Facts {
             ("components", self.components.to_string()),
             ("closed", yes_or_no(self.closed)),
             ("oriented", yes_or_no(self.oriented)),
-            ("volume", self.volume.map_or("none: no closed, oriented surface".to_owned(), |volume| volume.to_string())),
+            (
+                "volume",
+                self.volume.map_or("none: no closed, oriented manifold".to_owned(), |volume| volume.to_string()),
+            ),
             ("area", self.area.to_string()),
             ("bounds", format!("{min:?} to {max:?}")),
             ("boundary edges", self.boundary_edges.to_string()),
