@@ -86,17 +86,29 @@ fn syntax(message: &str, location: Location) -> RecipeError {
     RecipeError::new("", RecipeProblem::Syntax(message.lines().collect::<Vec<_>>().join(", "))).at(location)
 }
 
-fn line_of(text: &str, offset: usize) -> Location {
-    let end = offset.min(text.len());
-    Location::Line(1 + text.as_bytes()[..end].iter().filter(|&&byte| byte == b'\n').count())
+/// Where the lines of a text begin, so that the line of a place is found without reading the text again.
+struct Lines {
+    starts: Vec<usize>,
+}
+
+impl Lines {
+    fn of(text: &str) -> Self {
+        let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        Self { starts: std::iter::once(0).chain(breaks.map(|(offset, _)| offset + 1)).collect() }
+    }
+
+    fn locate(&self, offset: usize) -> Location {
+        Location::Line(self.starts.partition_point(|&start| start <= offset))
+    }
 }
 
 impl Node {
     pub(crate) fn from_toml(text: &str) -> Result<Self, RecipeError> {
+        let lines = Lines::of(text);
         let table = DeTable::parse(text).map_err(|error| {
-            syntax(error.message(), error.span().map_or(Location::Unknown, |span| line_of(text, span.start)))
+            syntax(error.message(), error.span().map_or(Location::Unknown, |span| lines.locate(span.start)))
         })?;
-        Self::table_from_toml(table.get_ref(), &|offset| line_of(text, offset))
+        Self::table_from_toml(table.get_ref(), &|offset| lines.locate(offset))
     }
 
     pub(crate) fn from_json(text: &str) -> Result<Self, RecipeError> {
@@ -112,10 +124,11 @@ impl Node {
             allow_non_finite_numbers: false,
             allow_extended_string_escapes: false,
         };
+        let lines = Lines::of(text);
         let parsed = parse_to_ast(text, &Default::default(), &options)
-            .map_err(|error| syntax(&error.kind().to_string(), line_of(text, error.range().start)))?;
+            .map_err(|error| syntax(&error.kind().to_string(), lines.locate(error.range().start)))?;
         match parsed.value {
-            Some(value) => Self::value_from_json(&value, text),
+            Some(value) => Self::value_from_json(&value, &lines),
             None => Err(syntax("the file holds no value", Location::Unknown)),
         }
     }
@@ -157,8 +170,8 @@ impl Node {
         Ok(Self { location, value })
     }
 
-    fn value_from_json(value: &ast::Value<'_>, text: &str) -> Result<Self, RecipeError> {
-        let location = line_of(text, value.range().start);
+    fn value_from_json(value: &ast::Value<'_>, lines: &Lines) -> Result<Self, RecipeError> {
+        let location = lines.locate(value.range().start);
         let value = match value {
             ast::Value::NullKeyword(_) => Value::Null,
             ast::Value::BooleanLit(literal) => Value::Boolean(literal.value),
@@ -169,18 +182,18 @@ impl Node {
                 _ => return Err(syntax(&format!("{} is not a number", literal.value), location)),
             },
             ast::Value::Array(array) => {
-                let items = array.elements.iter().map(|item| Self::value_from_json(item, text));
+                let items = array.elements.iter().map(|item| Self::value_from_json(item, lines));
                 Value::Array(items.collect::<Result<_, _>>()?)
             }
             ast::Value::Object(object) => {
                 let mut entries: Vec<Entry> = Vec::with_capacity(object.properties.len());
                 for property in &object.properties {
                     let key = property.name.as_str().to_owned();
-                    let location = line_of(text, property.range().start);
+                    let location = lines.locate(property.range().start);
                     if entries.iter().any(|entry| entry.key == key) {
                         return Err(syntax(&format!("the key `{key}` is given twice"), location));
                     }
-                    entries.push(Entry { key, location, node: Self::value_from_json(&property.value, text)? });
+                    entries.push(Entry { key, location, node: Self::value_from_json(&property.value, lines)? });
                 }
                 Value::Table(entries)
             }
