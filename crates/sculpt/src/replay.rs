@@ -137,8 +137,12 @@ impl Replay {
     /// # Errors
     /// [`ReplayError::Cancelled`] and [`ReplayError::Deform`].
     pub fn frame(&self, index: u32, count: u32, monitor: &dyn Monitor) -> Result<TriMesh, ReplayError> {
+        if index >= count.saturating_sub(1) {
+            // Done again, the lock would aim at the volume of the split mesh at rest, which rounds differently.
+            return Ok(self.deformed.mesh.clone());
+        }
         let strokes = &self.scene.strokes;
-        let time = strokes.len() as f64 * (f64::from(index) / f64::from(count.saturating_sub(1).max(1)));
+        let time = strokes.len() as f64 * (f64::from(index) / f64::from(count - 1));
         let whole = (time as usize).min(strokes.len());
         let mut so_far = strokes[..whole].to_vec();
         if let Some(stroke) = strokes.get(whole)
