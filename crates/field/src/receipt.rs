@@ -96,7 +96,7 @@ impl fmt::Display for Note {
                     "the lock moved a vertex by {ratio:.2} of the shortest edge at it; refine more before locking"
                 )
             }
-            Self::LockSkipped => f.write_str("the lock was skipped: the displacement has no hold on the volume"),
+            Self::LockSkipped => f.write_str("the lock was skipped: nothing moved that the volume depends on"),
             Self::LockNeedsClosed => f.write_str("the lock was skipped: the mesh is open and has no volume"),
         }
     }

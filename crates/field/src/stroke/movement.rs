@@ -97,7 +97,9 @@ impl Move {
 impl Segment {
     fn new(tool: &Tool, keys: &[Pose], key: usize, step: f64) -> Result<Self, StrokeError> {
         let [start, end] = [&keys[key], &keys[key + 1]];
-        let twist = start.twist_to(end).ok_or(StrokeError::HalfTurn { key })?;
+        // A pause: the logarithm of a rotation and its inverse would leave a rounding that moves what it should not.
+        let rest = BodyTwist { linear: DVec3::ZERO, angular: DVec3::ZERO };
+        let twist = if start == end { rest } else { start.twist_to(end).ok_or(StrokeError::HalfTurn { key })? };
         let travel = top_speed(&twist, tool.distance().bounds());
         let count = (travel / (step * tool.feature_size())).ceil().max(1.0);
         if count.is_nan() || count > MAX_STEPS as f64 {
@@ -120,6 +122,9 @@ impl Segment {
     }
 
     fn advance(&self, tool: &Tool, travelers: &mut Travelers<'_>) -> u64 {
+        if self.speed == 0.0 {
+            return 0;
+        }
         let field = RigidField::new(tool, self.twist);
         let bounds = tool.support_bounds();
         let mut evaluations = 0;

@@ -242,6 +242,16 @@ fn a_part_of_a_stroke_ends_on_its_way() {
 }
 
 #[test]
+fn a_pause_moves_nothing() {
+    let pose =
+        Pose { rotation: rotation_from_vector(DVec3::new(0.3, 0.7, -0.2)), translation: DVec3::new(0.1, 0.2, 0.3) };
+    let stroke = Move::new(sphere(Profile::Quintic), vec![pose, pose], 0.125).unwrap();
+    for point in [DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.7, 0.3, 0.2), DVec3::new(3.0, 0.0, 0.0)] {
+        assert_eq!(carried(&stroke, point), point);
+    }
+}
+
+#[test]
 fn bad_paths_are_refused() {
     let turn = Pose { rotation: rotation_from_vector(DVec3::Z * std::f64::consts::PI), translation: DVec3::ZERO };
     let error = |keys: Vec<Pose>, step: f64| Move::new(sphere(Profile::Quintic), keys, step).unwrap_err();
