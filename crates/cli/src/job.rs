@@ -163,6 +163,11 @@ impl Drafts {
             let format = MeshFormat::of_path(path).ok_or_else(|| WriteError::UnknownFormat { path: path.clone() })?;
             mesh = Some(Draft { path: staging.add_file(path)?, format });
         }
+        if let Some(path) =
+            outputs.preview.as_ref().filter(|path| path.extension().is_none_or(|ending| ending != "png"))
+        {
+            return Err(CommandError::file(path, "a preview must end in .png"));
+        }
         let mut optional = |path: &Option<PathBuf>| path.as_ref().map(|path| staging.add_file(path)).transpose();
         let [preview, report] = [optional(&outputs.preview)?, optional(&outputs.report)?];
         let mut frames = Vec::new();
