@@ -25,7 +25,16 @@ fn run_writes_everything_it_is_asked_for() {
 
     let report = folder.json("report.json");
     for side in ["before", "after"] {
-        for key in ["vertices", "triangles", "closed", "volume", "area", "bounds", "self_intersecting_triangles"] {
+        for key in [
+            "vertices",
+            "triangles",
+            "closed",
+            "volume",
+            "area",
+            "bounds",
+            "self_intersecting_triangles",
+            "self_intersecting_area",
+        ] {
             assert!(!report[side][key].is_null(), "{side}.{key}");
         }
     }

@@ -110,7 +110,7 @@ impl SelfIntersections {
                 let [a, b, c] = mesh.corners(triangle as usize);
                 0.5 * (b - a).cross(c - a).length()
             })
-            .sum()
+            .fold(0.0, |sum, area| sum + area)
     }
 }
 

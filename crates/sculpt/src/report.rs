@@ -69,6 +69,8 @@ pub struct Measures {
     pub bounds: Bounds,
     /// Triangles that intersect another one.
     pub self_intersecting_triangles: usize,
+    /// Sum of their areas, square model units.
+    pub self_intersecting_area: f64,
 }
 
 /// A bounding box, model units.
@@ -124,6 +126,7 @@ impl Measures {
     pub fn of(mesh: &TriMesh, monitor: &dyn Monitor) -> Result<Self, SelfIntersectionError> {
         let closed = ClosedMesh::new(mesh).ok();
         let bounds = mesh.bounds();
+        let crossings = SelfIntersections::of(mesh, monitor)?;
         Ok(Self {
             vertices: mesh.positions.len(),
             triangles: mesh.triangles.len(),
@@ -131,7 +134,8 @@ impl Measures {
             volume: closed.map(|mesh| mesh.volume()),
             area: mesh.area(),
             bounds: Bounds { min: bounds.min.to_array(), max: bounds.max.to_array() },
-            self_intersecting_triangles: SelfIntersections::of(mesh, monitor)?.triangles().len(),
+            self_intersecting_triangles: crossings.triangles().len(),
+            self_intersecting_area: crossings.area(mesh),
         })
     }
 }
