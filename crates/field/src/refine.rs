@@ -115,6 +115,17 @@ impl Criteria {
     }
 }
 
+impl Refinement {
+    /// Splits the chosen edges, unless that would pass the limit on triangles; returns whether it did.
+    fn split(&mut self, mesh: &mut Tessellation, is_split: &[bool], criteria: &Criteria) -> bool {
+        self.is_limited = mesh.triangles_after(is_split) > criteria.max_triangles;
+        if !self.is_limited {
+            self.inserted += mesh.split(is_split);
+        }
+        !self.is_limited
+    }
+}
+
 /// Splits triangles in the way of `stroke`, before it acts, until its field cannot slip through between their vertices.
 pub(crate) fn resolve_field(
     mesh: &mut Tessellation,
@@ -152,11 +163,9 @@ pub(crate) fn resolve_field(
             }
         }
         refinement.evaluations += add_longest_edges(mesh, past, &mut is_split, monitor)?;
-        if mesh.triangles_after(&is_split) > criteria.max_triangles {
-            refinement.is_limited = true;
+        if !refinement.split(mesh, &is_split, criteria) {
             break;
         }
-        refinement.inserted += mesh.split(&is_split);
     }
     Ok(refinement)
 }
@@ -185,11 +194,9 @@ pub(crate) fn refine(
             break;
         }
         refinement.evaluations += add_longest_edges(mesh, strokes, &mut is_split, monitor)?;
-        if mesh.triangles_after(&is_split) > criteria.max_triangles {
-            refinement.is_limited = true;
+        if !refinement.split(mesh, &is_split, criteria) {
             break;
         }
-        refinement.inserted += mesh.split(&is_split);
     }
     Ok(refinement)
 }
@@ -237,11 +244,9 @@ pub(crate) fn untangle(
         if mesh.triangles_after(&is_split) > most {
             break;
         }
-        if mesh.triangles_after(&is_split) > criteria.max_triangles {
-            refinement.is_limited = true;
+        if !refinement.split(mesh, &is_split, criteria) {
             break;
         }
-        refinement.inserted += mesh.split(&is_split);
     }
     Ok(refinement)
 }
