@@ -5,6 +5,8 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use isochore_mesh::PointBlock;
 
+use crate::{Field, FieldBlock};
+
 /// Gauss-Legendre nodes and weights on [0, 1], exact to degree five.
 const NODES: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
@@ -123,6 +125,16 @@ pub(crate) fn worst_flux(velocity: impl Fn(&PointBlock) -> PointBlock, kink: imp
     let centers = [DVec3::new(0.9, 0.1, 0.2), DVec3::new(-0.2, 1.0, 0.5), DVec3::new(0.3, -0.4, -1.1)];
     let spheres = centers.into_iter().flat_map(|center| [0.45, 0.8].map(|radius| (size * center, size * radius)));
     spheres.map(|(center, radius)| relative_flux(&velocity, &kink, center, radius)).fold(0.0, f64::max)
+}
+
+/// [`worst_flux`] of a field.
+pub(crate) fn worst_field_flux(field: &dyn Field, kink: impl Fn(DVec3) -> f64, size: f64) -> f64 {
+    let velocity = |points: &PointBlock| {
+        let mut block = FieldBlock::ZERO;
+        field.evaluate_into(points, &mut block);
+        block.velocity
+    };
+    worst_flux(velocity, kink, size)
 }
 
 /// What adaptive quadrature may leave of the flux of a divergence-free field, jumps of its tangential velocity included. A

@@ -10,28 +10,36 @@
 
 mod deform;
 mod facet_error;
+mod field;
+#[cfg(test)]
+mod finite_differences;
 mod flow;
 #[cfg(test)]
 mod flux;
 mod lock;
+mod moving_tool;
 mod pose;
 mod profile;
 mod receipt;
 mod refine;
 mod rigid_field;
 mod rk4;
+mod scalar_block;
 mod stroke;
 mod tessellation;
 mod tool;
 
 pub use deform::{DeformError, DeformOptions, Deformed, deform};
+pub use field::{Field, FieldBlock, MovingField, NO_CORE};
 pub use flow::flow_points;
+pub use moving_tool::MovingTool;
 pub use pose::{BodyTwist, Pose, rotation_from_vector};
 pub use profile::{Profile, UnknownProfile};
 pub use receipt::{Note, Receipt, StageSeconds, StrokeReceipt};
 pub use refine::RefineOptions;
 pub use rigid_field::{RigidField, VelocityBlock};
-pub use stroke::{Bend, Move, Stroke, StrokeError, Twist};
+pub use scalar_block::ScalarBlock;
+pub use stroke::{Bend, FieldStroke, Move, Stroke, StrokeError, Twist};
 pub use tool::{Tool, ToolError};
 
 #[cfg(doctest)]

@@ -4,6 +4,7 @@
 //! (exponential and logarithm of a screw motion).
 
 use glam::{DMat3, DQuat, DVec3};
+use isochore_mesh::Aabb;
 
 /// A rigid placement: world = rotation · local + translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,6 +101,12 @@ impl BodyTwist {
     pub fn velocity(&self, local: DVec3) -> DVec3 {
         self.linear + self.angular.cross(local)
     }
+
+    /// Upper bound on the speed of the points of a box, in local coordinates: a convex function, so the largest of its
+    /// corners'.
+    pub(crate) fn top_speed(&self, bounds: Aabb) -> f64 {
+        bounds.corners().into_iter().map(|corner| self.velocity(corner).length()).fold(0.0, f64::max)
+    }
 }
 
 /// The rotation by `turn.length()` radians about `turn`.
@@ -131,6 +138,11 @@ impl From<&Pose> for Placement {
 impl Placement {
     pub(crate) fn to_world(self, local: DVec3) -> DVec3 {
         self.world_from_local * local + self.translation
+    }
+
+    /// A vector given in local axes, in world axes.
+    pub(crate) fn turn_to_world(self, local: DVec3) -> DVec3 {
+        self.world_from_local * local
     }
 
     pub(crate) fn to_local(self, world: DVec3) -> DVec3 {

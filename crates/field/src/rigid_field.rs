@@ -15,7 +15,7 @@
 use glam::DVec3;
 use isochore_mesh::{DistanceBlock, LANES, PointBlock};
 
-use crate::{BodyTwist, Tool};
+use crate::{BodyTwist, Tool, field::curl_of_product};
 
 /// The field of a tool that moves with a twist, in tool coordinates, where it does not change with time.
 #[derive(Debug, Clone, Copy)]
@@ -60,29 +60,12 @@ impl<'a> RigidField<'a> {
         let support = self.tool.support();
         let profile = self.tool.profile().evaluate_block(&distance.value, support);
 
-        let center = self.tool.center();
-        let velocity = self.twist.velocity(center);
-        let angular = self.twist.angular;
-        let normal = &distance.gradient;
+        let motion = self.motion();
         for lane in 0..LANES {
-            let (rx, ry, rz) = (points.x[lane] - center.x, points.y[lane] - center.y, points.z[lane] - center.z);
-            let turn_x = angular.y * rz - angular.z * ry;
-            let turn_y = angular.z * rx - angular.x * rz;
-            let turn_z = angular.x * ry - angular.y * rx;
-            // A = (½ v + ⅓ ω×r) × r
-            let half_x = 0.5 * velocity.x + turn_x / 3.0;
-            let half_y = 0.5 * velocity.y + turn_y / 3.0;
-            let half_z = 0.5 * velocity.z + turn_z / 3.0;
-            let potential_x = half_y * rz - half_z * ry;
-            let potential_y = half_z * rx - half_x * rz;
-            let potential_z = half_x * ry - half_y * rx;
-            // V − (v + ω×r) = (g − 1)(v + ω×r) + (g′/R) n×A
-            let lag = profile.value[lane] - 1.0;
-            let slope = profile.slope[lane] / support;
-            let (nx, ny, nz) = (slope * normal.x[lane], slope * normal.y[lane], slope * normal.z[lane]);
-            out.relative.x[lane] = lag * (velocity.x + turn_x) + (ny * potential_z - nz * potential_y);
-            out.relative.y[lane] = lag * (velocity.y + turn_y) + (nz * potential_x - nx * potential_z);
-            out.relative.z[lane] = lag * (velocity.z + turn_z) + (nx * potential_y - ny * potential_x);
+            let (potential, curl) = motion.potential(points.get(lane));
+            let gradient = profile.slope[lane] / support * distance.gradient.get(lane);
+            // V − (v + ω×r) = (g − 1)(v + ω×r) + (g′/R) n × A
+            out.relative.set(lane, curl_of_product(profile.value[lane] - 1.0, gradient, potential, curl));
         }
         out.distance = distance.value;
         for lane in 0..LANES {
@@ -90,11 +73,35 @@ impl<'a> RigidField<'a> {
         }
     }
 
+    /// The tool's motion about its center.
+    fn motion(&self) -> RigidMotion {
+        let center = self.tool.center();
+        RigidMotion { center, linear: self.twist.velocity(center), angular: self.twist.angular }
+    }
+
     /// The velocity V at one point, in tool coordinates and tool axes.
     pub fn velocity(&self, point: DVec3) -> DVec3 {
         let mut block = VelocityBlock::REST;
         self.evaluate_into(&PointBlock::splat(point), &mut block);
         if block.is_outside[0] { DVec3::ZERO } else { block.relative.get(0) + self.twist.velocity(point) }
+    }
+}
+
+/// A rigid motion: `linear` is the velocity of `center`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RigidMotion {
+    pub(crate) center: DVec3,
+    pub(crate) linear: DVec3,
+    pub(crate) angular: DVec3,
+}
+
+impl RigidMotion {
+    /// The vector potential A = ½ v×r + ⅓ (ω×r)×r at `point`, and its curl v + ω×r.
+    #[inline(always)]
+    pub(crate) fn potential(&self, point: DVec3) -> (DVec3, DVec3) {
+        let r = point - self.center;
+        let turn = self.angular.cross(r);
+        ((0.5 * self.linear + turn / 3.0).cross(r), self.linear + turn)
     }
 }
 

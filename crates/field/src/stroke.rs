@@ -1,6 +1,7 @@
 //! Strokes: the motions that deform, each the exact or integrated flow of a divergence-free field.
 
 mod bend;
+mod field_stroke;
 mod movement;
 mod rotation;
 mod twist;
@@ -8,6 +9,7 @@ mod twist;
 use glam::DVec3;
 
 pub use bend::Bend;
+pub use field_stroke::FieldStroke;
 pub use movement::Move;
 pub use twist::Twist;
 
@@ -16,6 +18,8 @@ pub use twist::Twist;
 pub enum Stroke {
     /// A tool moves rigidly from pose to pose.
     Move(Move),
+    /// Fields that change with time act one after the other.
+    Field(FieldStroke),
     /// Planes across an axis turn about it, by an angle proportional to the distance along it.
     Twist(Twist),
     /// Spheres turn about an axis, by an angle proportional to the squared radius.
@@ -29,6 +33,7 @@ impl Stroke {
     pub(crate) fn advance(&self, points: &mut [DVec3]) -> u64 {
         match self {
             Self::Move(stroke) => stroke.advance(points),
+            Self::Field(stroke) => stroke.advance(points),
             Self::Twist(stroke) => stroke.advance(points),
             Self::Bend(stroke) => stroke.advance(points),
         }
@@ -38,6 +43,7 @@ impl Stroke {
     pub(crate) fn may_touch(&self, center: DVec3, radius: f64) -> bool {
         match self {
             Self::Move(stroke) => stroke.may_touch(center, radius),
+            Self::Field(stroke) => stroke.may_touch(center, radius),
             Self::Twist(_) | Self::Bend(_) => true,
         }
     }
@@ -46,6 +52,7 @@ impl Stroke {
     pub(crate) fn feature_size(&self) -> f64 {
         match self {
             Self::Move(stroke) => stroke.tool().feature_size(),
+            Self::Field(stroke) => stroke.feature_size(),
             Self::Twist(_) | Self::Bend(_) => f64::INFINITY,
         }
     }
@@ -55,6 +62,7 @@ impl Stroke {
         let fraction = fraction.clamp(0.0, 1.0);
         match self {
             Self::Move(stroke) => Self::Move(stroke.truncated(fraction)),
+            Self::Field(stroke) => Self::Field(stroke.truncated(fraction)),
             Self::Twist(stroke) => Self::Twist(stroke.truncated(fraction)),
             Self::Bend(stroke) => Self::Bend(stroke.truncated(fraction)),
         }

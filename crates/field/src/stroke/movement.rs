@@ -8,10 +8,13 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use isochore_mesh::{Aabb, LANES, PointBlock};
+use isochore_mesh::{LANES, PointBlock};
 
 use super::StrokeError;
-use crate::{BodyTwist, Pose, RigidField, Tool, pose::Placement, rigid_field::VelocityBlock, rk4::rk4_step};
+use crate::{
+    BodyTwist, MovingField, MovingTool, Pose, RigidField, Tool, pose::Placement, rigid_field::VelocityBlock,
+    rk4::rk4_step,
+};
 
 /// Steps between two keys at most: more is a mistake in the recipe, and the table of poses must fit in memory.
 pub(super) const MAX_STEPS: usize = 1_000_000;
@@ -74,6 +77,13 @@ impl Move {
         self.segments.iter().map(Segment::steps).sum()
     }
 
+    /// The field of each segment, in world coordinates.
+    pub fn fields(&self) -> Vec<Arc<dyn MovingField>> {
+        let starts = self.keys.iter().zip(&self.segments);
+        let field = |(start, segment): (&Pose, &Segment)| MovingTool::new(self.tool.clone(), *start, segment.twist);
+        starts.map(|start| Arc::new(field(start)) as _).collect()
+    }
+
     pub(super) fn advance(&self, points: &mut [DVec3]) -> u64 {
         let mut travelers = Travelers::new(points);
         self.segments.iter().map(|segment| segment.advance(&self.tool, &mut travelers)).sum()
@@ -100,7 +110,7 @@ impl Segment {
         // A pause: the logarithm of a rotation and its inverse would leave a rounding that moves what it should not.
         let rest = BodyTwist { linear: DVec3::ZERO, angular: DVec3::ZERO };
         let twist = if start == end { rest } else { start.twist_to(end).ok_or(StrokeError::HalfTurn { key })? };
-        let travel = top_speed(&twist, tool.distance().bounds());
+        let travel = twist.top_speed(tool.distance().bounds());
         let count = (travel / (step * tool.feature_size())).ceil().max(1.0);
         if count.is_nan() || count > MAX_STEPS as f64 {
             return Err(StrokeError::TooManySteps { key, steps: count });
@@ -109,7 +119,7 @@ impl Segment {
         let mut placements: Vec<Placement> =
             (0..steps).map(|index| Placement::from(&start.moved(&twist, index as f64 / steps as f64))).collect();
         placements.push(Placement::from(end));
-        Ok(Self { twist, placements, speed: top_speed(&twist, tool.support_bounds()) })
+        Ok(Self { twist, placements, speed: twist.top_speed(tool.support_bounds()) })
     }
 
     fn steps(&self) -> usize {
@@ -262,11 +272,6 @@ impl<'a> Travelers<'a> {
         }
         self.wake[index] = wake;
     }
-}
-
-/// Upper bound on the speed of the points of a box: a convex function, so the largest of its corners'.
-fn top_speed(twist: &BodyTwist, bounds: Aabb) -> f64 {
-    bounds.corners().into_iter().map(|corner| twist.velocity(corner).length()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

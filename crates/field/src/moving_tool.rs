@@ -1,0 +1,102 @@
+//! The field of a tool that moves with a constant body twist, in world coordinates.
+//!
+//! [`Move`](crate::Move) integrates the same field in tool coordinates, where it stands still, which is faster; in world
+//! coordinates it can be combined with what stands still in the world.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use isochore_mesh::{Aabb, DistanceBlock, LANES, PointBlock};
+
+use crate::{BodyTwist, Field, FieldBlock, MovingField, Pose, Tool, pose::Placement, rigid_field::RigidMotion};
+
+/// A tool on its way along one screw, from time 0 to 1.
+#[derive(Debug, Clone)]
+pub struct MovingTool {
+    tool: Arc<Tool>,
+    start: Pose,
+    twist: BodyTwist,
+}
+
+impl MovingTool {
+    /// The way of `tool` from `start` with a constant `twist`, in tool coordinates, for one unit of time.
+    pub fn new(tool: Arc<Tool>, start: Pose, twist: BodyTwist) -> Self {
+        Self { tool, start, twist }
+    }
+}
+
+impl MovingField for MovingTool {
+    fn at(&self, time: f64) -> Box<dyn Field> {
+        let pose = self.start.moved(&self.twist, time);
+        let center = self.tool.center();
+        let motion = RigidMotion { center, linear: self.twist.velocity(center), angular: self.twist.angular };
+        let corners = self.tool.support_bounds().corners().map(|corner| pose.transform(corner));
+        Box::new(PlacedTool {
+            tool: Arc::clone(&self.tool),
+            pose,
+            placement: Placement::from(&pose),
+            motion,
+            bounds: Aabb::of(corners),
+        })
+    }
+
+    fn approach_speed(&self) -> f64 {
+        self.twist.top_speed(self.tool.support_bounds())
+    }
+
+    fn carrying_speed(&self) -> f64 {
+        self.twist.top_speed(self.tool.distance().bounds())
+    }
+
+    fn feature_size(&self) -> f64 {
+        self.tool.feature_size()
+    }
+}
+
+/// A tool where it is at one instant, and how it moves.
+#[derive(Debug, Clone)]
+struct PlacedTool {
+    tool: Arc<Tool>,
+    pose: Pose,
+    placement: Placement,
+    /// In tool coordinates.
+    motion: RigidMotion,
+    bounds: Aabb,
+}
+
+impl Field for PlacedTool {
+    fn evaluate_into(&self, points: &PointBlock, out: &mut FieldBlock) {
+        let mut local = PointBlock::ZERO;
+        for lane in 0..LANES {
+            local.set(lane, self.placement.to_local(points.get(lane)));
+        }
+        let mut distance = DistanceBlock::FAR;
+        self.tool.distance().sample_into(&local, &mut distance);
+        let support = self.tool.support();
+        let profile = self.tool.profile().evaluate_block(&distance.value, support);
+        for lane in 0..LANES {
+            let (share, slope) = (profile.value[lane], profile.slope[lane] / support);
+            if distance.value[lane] >= support {
+                let beyond = (distance.value[lane] - support) / self.tool.distance().lipschitz();
+                // Beyond the samples of a grid the distance is infinite, and only the box is known.
+                let clearance = if beyond.is_finite() { beyond } else { self.bounds.distance(points.get(lane)) };
+                out.set_outside(lane, clearance);
+                continue;
+            }
+            let (potential, curl) = self.motion.potential(local.get(lane));
+            let gradient = slope * distance.gradient.get(lane);
+            let to_world = |vector: DVec3| self.placement.turn_to_world(vector);
+            out.set_product(lane, share, to_world(gradient), to_world(potential), to_world(curl));
+            out.clearance[lane] = 0.0;
+            out.core[lane] = if share == 1.0 && gradient == DVec3::ZERO { 0 } else { crate::NO_CORE };
+        }
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    fn core_pose(&self, _core: u32) -> Pose {
+        self.pose
+    }
+}

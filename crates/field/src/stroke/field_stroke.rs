@@ -1,0 +1,227 @@
+//! The flow of a field that changes with time, by Runge-Kutta steps of equal length in world coordinates.
+//!
+//! A point that is in the rigid core of a body at the beginning, the middle and the end of a step moves with that body, in
+//! closed form. A point whose four stages all lie beyond the support rests and keeps its bits; sleeping only skips steps
+//! through which a point is certain to rest, so it changes no bit.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use isochore_mesh::{LANES, PointBlock};
+
+use super::{StrokeError, movement::MAX_STEPS};
+use crate::{
+    Field, MovingField,
+    field::{FieldBlock, NO_CORE},
+    pose::Placement,
+    rk4::rk4_step,
+};
+
+/// Clearance that is given away to rounding when a point goes to sleep, as a share of the coordinates at hand.
+/// Larger wakes points needlessly early; smaller than some units of f64 rounding could let a sleeping point miss the support.
+const SLEEP_SLACK: f64 = 1e-12;
+
+/// Fields that act one after the other, each over its own time.
+#[derive(Debug, Clone)]
+pub struct FieldStroke {
+    spans: Vec<Span>,
+    step: f64,
+    legs: Vec<Leg>,
+}
+
+/// A field and the time, from 0 to 1, at which it ends.
+#[derive(Debug, Clone)]
+struct Span {
+    field: Arc<dyn MovingField>,
+    end: f64,
+}
+
+/// A span cut into steps.
+#[derive(Debug, Clone)]
+struct Leg {
+    /// The field at the beginning and in the middle of every step, and at the end of the last.
+    instants: Vec<Arc<dyn Field>>,
+    step_time: f64,
+    approach_speed: f64,
+}
+
+impl FieldStroke {
+    /// The flow of `fields`, one after the other.
+    ///
+    /// `step` bounds the travel of what a field carries fully in one step of the integrator, as a fraction of the field's
+    /// [feature size](MovingField::feature_size).
+    ///
+    /// # Errors
+    /// [`StrokeError`]: no field at all, a step that is no positive fraction, a way of too many steps.
+    pub fn new(fields: Vec<Arc<dyn MovingField>>, step: f64) -> Result<Self, StrokeError> {
+        Self::from_spans(fields.into_iter().map(|field| Span { field, end: 1.0 }).collect(), step)
+    }
+
+    fn from_spans(spans: Vec<Span>, step: f64) -> Result<Self, StrokeError> {
+        if !(step > 0.0 && step.is_finite()) {
+            return Err(StrokeError::Step(step));
+        }
+        if spans.is_empty() {
+            return Err(StrokeError::TooFewKeys(0));
+        }
+        let legs = spans.iter().enumerate().map(|(key, span)| Leg::new(span, key, step)).collect::<Result<_, _>>()?;
+        Ok(Self { spans, step, legs })
+    }
+
+    /// The fields, one after the other.
+    pub fn fields(&self) -> impl Iterator<Item = &Arc<dyn MovingField>> {
+        self.spans.iter().map(|span| &span.field)
+    }
+
+    /// Steps of the integrator along the whole way.
+    pub fn steps(&self) -> usize {
+        self.legs.iter().map(Leg::steps).sum()
+    }
+
+    /// The travel in one step, as a fraction of the feature size.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Length over which the fields change.
+    pub(super) fn feature_size(&self) -> f64 {
+        self.fields().map(|field| field.feature_size()).fold(f64::INFINITY, f64::min)
+    }
+
+    pub(super) fn advance(&self, points: &mut [DVec3]) -> u64 {
+        let mut wake = vec![0; points.len()];
+        self.legs.iter().map(|leg| leg.advance(points, &mut wake)).sum()
+    }
+
+    /// Whether the support may touch the ball, as it stands, at any time; false is certain.
+    pub(super) fn may_touch(&self, center: DVec3, radius: f64) -> bool {
+        self.legs.iter().any(|leg| leg.may_touch(center, radius))
+    }
+
+    pub(super) fn truncated(&self, fraction: f64) -> Self {
+        let mut time_left = fraction * self.spans.iter().map(|span| span.end).sum::<f64>();
+        let mut spans = Vec::new();
+        for span in &self.spans {
+            let end = time_left.min(span.end);
+            if end > 0.0 || spans.is_empty() {
+                spans.push(Span { field: Arc::clone(&span.field), end });
+            }
+            time_left -= end;
+        }
+        // A part of a legal way is legal: it is shorter.
+        Self::from_spans(spans, self.step).unwrap_or_else(|_| self.clone())
+    }
+}
+
+impl Leg {
+    fn new(span: &Span, key: usize, step: f64) -> Result<Self, StrokeError> {
+        let Span { field, end } = span;
+        let travel = field.carrying_speed() * end;
+        let count = (travel / (step * field.feature_size())).ceil().max(1.0);
+        if count.is_nan() || count > MAX_STEPS as f64 {
+            return Err(StrokeError::TooManySteps { key, steps: count });
+        }
+        let halves = 2 * count as usize;
+        let instants = (0..=halves).map(|half| Arc::from(field.at(end * (half as f64 / halves as f64)))).collect();
+        Ok(Self { instants, step_time: end / count, approach_speed: field.approach_speed() })
+    }
+
+    fn steps(&self) -> usize {
+        self.instants.len() / 2
+    }
+
+    fn advance(&self, points: &mut [DVec3], wake: &mut [usize]) -> u64 {
+        let mut evaluations = 0;
+        wake.fill(0);
+        let mut due = Vec::new();
+        for step in 0..self.steps() {
+            let bounds = self.instants[2 * step].bounds();
+            due.clear();
+            for (index, (point, wake)) in points.iter().zip(&mut *wake).enumerate() {
+                if *wake <= step {
+                    match self.resting_steps(bounds.distance(*point), *point) {
+                        0 => due.push(index as u32),
+                        sleep => *wake = step + sleep,
+                    }
+                }
+            }
+            for block in due.chunks(LANES) {
+                evaluations += self.step_block(step, block, points, wake);
+            }
+        }
+        evaluations
+    }
+
+    /// Takes the points named in `block`, which stand where they are at the beginning of `step`, to its end.
+    fn step_block(&self, step: usize, block: &[u32], points: &mut [DVec3], wake: &mut [usize]) -> u64 {
+        let [begin, middle, end] = [0, 1, 2].map(|half| &*self.instants[2 * step + half]);
+        let start = PointBlock::gather(&block.iter().map(|&index| points[index as usize]).collect::<Vec<_>>());
+        let mut field = FieldBlock::ZERO;
+        begin.evaluate_into(&start, &mut field);
+        let mut is_still = field.clearance.map(|clearance| clearance > 0.0);
+        let sleep: [usize; LANES] =
+            std::array::from_fn(|lane| self.resting_steps(field.clearance[lane], start.get(lane)));
+        let mut core = field.core;
+        if sleep[..block.len()].iter().all(|&steps| steps > 0) {
+            block.iter().zip(sleep).for_each(|(&index, sleep)| wake[index as usize] = step + sleep);
+            return block.len() as u64;
+        }
+        let first = field.velocity;
+        let mut stages = [middle, middle, end].into_iter();
+        let arrived = rk4_step(&start, &first, self.step_time, |points, out| {
+            if let Some(stage) = stages.next() {
+                stage.evaluate_into(points, &mut field);
+            }
+            for lane in 0..LANES {
+                is_still[lane] &= field.clearance[lane] > 0.0;
+                if field.core[lane] != core[lane] {
+                    core[lane] = NO_CORE;
+                }
+            }
+            *out = field.velocity;
+        });
+        for (lane, &index) in block.iter().enumerate() {
+            let point = &mut points[index as usize];
+            if is_still[lane] {
+                wake[index as usize] = step + sleep[lane].max(1);
+            } else if core[lane] == NO_CORE {
+                *point = arrived.get(lane);
+            } else {
+                let [from, to] = [begin, end].map(|field| Placement::from(&field.core_pose(core[lane])));
+                *point = to.to_world(from.to_local(*point));
+            }
+        }
+        4 * block.len() as u64
+    }
+
+    /// Number of steps through which a point at rest, at least `clearance` away from the support, is certain to stay beyond it.
+    fn resting_steps(&self, clearance: f64, point: DVec3) -> usize {
+        let slack = SLEEP_SLACK * (point.abs().max_element() + clearance);
+        let steps = (clearance - slack) / (self.approach_speed * self.step_time);
+        // A field that stands still comes no closer: infinity means all remaining steps.
+        if steps >= 1.0 { (steps as usize).min(self.steps()) } else { 0 }
+    }
+
+    fn may_touch(&self, center: DVec3, radius: f64) -> bool {
+        let mut step = 0;
+        while step <= self.steps() {
+            let field = &self.instants[2 * step];
+            let mut clearance = field.bounds().distance(center) - radius;
+            if clearance <= 0.0 {
+                let mut block = FieldBlock::ZERO;
+                field.evaluate_into(&PointBlock::splat(center), &mut block);
+                clearance = block.clearance[0] - radius;
+            }
+            let sleep = self.resting_steps(clearance, center);
+            // Between this step and the next the support comes closer by less than a step's approach, or it may touch.
+            if sleep == 0 {
+                return true;
+            }
+            step += sleep;
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests;

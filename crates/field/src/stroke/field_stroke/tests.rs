@@ -1,0 +1,120 @@
+use isochore_mesh::{Capsule, Sphere};
+
+use super::*;
+use crate::{
+    Move, Pose, Profile, Tool,
+    finite_differences::{deviation, scattered_points},
+    flux::{QUADRATURE_NOISE, worst_field_flux},
+    rotation_from_vector,
+};
+
+fn pose(turn: [f64; 3], translation: [f64; 3]) -> Pose {
+    Pose { rotation: rotation_from_vector(turn.into()), translation: translation.into() }
+}
+
+/// A rod that screws its way through three poses, and the same as fields in the world.
+fn rod(step: f64) -> (Move, FieldStroke) {
+    let tool = Tool::new(Arc::new(Capsule::new(0.15, 0.6).unwrap()), 0.25, Profile::Quintic).unwrap();
+    let keys = vec![
+        pose([0.0; 3], [-0.9, 0.1, 0.0]),
+        pose([0.0, 0.9, 0.2], [-0.1, 0.2, 0.1]),
+        pose([0.4, 0.9, 0.2], [0.5, 0.0, 0.3]),
+    ];
+    let motion = Move::new(Arc::new(tool), keys, step).unwrap();
+    let fields = FieldStroke::new(motion.fields(), step).unwrap();
+    (motion, fields)
+}
+
+fn largest_distance(a: &[DVec3], b: &[DVec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+}
+
+#[test]
+fn world_and_tool_coordinates_converge_to_the_same_flow() {
+    let points = scattered_points(200, 1.0);
+    let difference = |step: f64| {
+        let (motion, fields) = rod(step);
+        let (mut a, mut b) = (points.clone(), points.clone());
+        motion.advance(&mut a);
+        fields.advance(&mut b);
+        assert!(largest_distance(&a, &points) > 0.3);
+        largest_distance(&a, &b)
+    };
+    let [coarse, fine] = [0.1, 0.05].map(difference);
+    // Both are of order four: half the step leaves a sixteenth; a quintic's third derivatives jump, which costs some of it.
+    assert!(fine < coarse / 9.0 && fine < 1e-5, "{coarse:e} {fine:e}");
+}
+
+#[test]
+fn the_core_moves_rigidly() {
+    let (motion, fields) = rod(0.125);
+    let mut points = [DVec3::new(-0.85, 0.15, 0.4)];
+    let mut expected = points;
+    fields.advance(&mut points);
+    motion.advance(&mut expected);
+    // Both carry a core point by closed forms, so only the roundings of some dozens of steps differ.
+    assert!(points[0].distance(expected[0]) < 1e-14, "{points:?} {expected:?}");
+}
+
+#[test]
+fn sleeping_changes_no_bit() {
+    let (_, fields) = rod(0.1);
+    let mut restless = fields.clone();
+    restless.legs.iter_mut().for_each(|leg| leg.approach_speed = f64::INFINITY);
+    let points = scattered_points(500, 1.2);
+    let (mut a, mut b) = (points.clone(), points.clone());
+    let evaluations = fields.advance(&mut a);
+    let all = restless.advance(&mut b);
+    assert_eq!(a, b);
+    assert!(evaluations < all / 2, "{evaluations} of {all}");
+    let unmoved = a.iter().zip(&points).filter(|(a, b)| a == b).count();
+    assert!(unmoved > 100 && unmoved < 450, "{unmoved}");
+}
+
+#[test]
+fn what_may_not_be_touched_is_not_moved() {
+    let (_, fields) = rod(0.1);
+    let points = scattered_points(500, 1.2);
+    let mut moved = points.clone();
+    fields.advance(&mut moved);
+    let mut untouchable = 0;
+    for (point, moved) in points.iter().zip(moved) {
+        if !fields.may_touch(*point, 0.0) {
+            assert_eq!(*point, moved);
+            untouchable += 1;
+        }
+    }
+    assert!(untouchable > 100, "{untouchable}");
+}
+
+#[test]
+fn a_part_of_the_way_is_the_way_so_far() {
+    let (motion, fields) = rod(0.02);
+    let points = scattered_points(100, 1.0);
+    for fraction in [0.0, 0.3, 0.5, 0.8] {
+        let (mut a, mut b) = (points.clone(), points.clone());
+        motion.truncated(fraction).advance(&mut a);
+        fields.truncated(fraction).advance(&mut b);
+        // Both are off the exact flow by less than 1e-6 at this step.
+        assert!(largest_distance(&a, &b) < 1e-6, "{fraction}");
+    }
+}
+
+#[test]
+fn a_moving_tool_is_a_divergence_free_field() {
+    let (_, fields) = rod(0.1);
+    let field = &fields.legs[1].instants[1];
+    let seen = deviation(&**field, &scattered_points(200, 0.8), 1e-4);
+    // Truncation: h²/6 of derivatives of the quintic over a support of 0.25, of the order of 60/R³ and 360/R⁴.
+    assert!(seen.curl < 1e-4 && seen.divergence < 1e-4 && seen.gradient < 1e-4, "{seen:?}");
+    assert!(worst_field_flux(&**field, |_| f64::INFINITY, 0.5) < QUADRATURE_NOISE);
+}
+
+#[test]
+fn strokes_without_a_way_are_refused() {
+    assert_eq!(FieldStroke::new(Vec::new(), 0.1).unwrap_err(), StrokeError::TooFewKeys(0));
+    let tool = Tool::new(Arc::new(Sphere::new(0.1).unwrap()), 0.1, Profile::Quintic).unwrap();
+    let motion = Move::new(Arc::new(tool), vec![Pose::IDENTITY, Pose::at(DVec3::X)], 1.0).unwrap();
+    assert_eq!(FieldStroke::new(motion.fields(), 0.0).unwrap_err(), StrokeError::Step(0.0));
+    assert!(matches!(FieldStroke::new(motion.fields(), 1e-9).unwrap_err(), StrokeError::TooManySteps { key: 0, .. }));
+}
