@@ -45,6 +45,11 @@ impl<C: Curve> ArcLength<C> {
         self.lengths[self.lengths.len() - 1]
     }
 
+    /// The parameters of the table, ascending from the start of the domain to its end, each with the length up to there.
+    pub fn table(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.parameters.iter().copied().zip(self.lengths.iter().copied())
+    }
+
     /// Length from the start of the domain to `parameter`, which is clamped into the domain.
     pub fn length_to(&self, parameter: f64) -> f64 {
         let last = self.parameters.len() - 1;

@@ -50,6 +50,12 @@ pub enum SplineError {
         /// The other.
         next: usize,
     },
+    /// Given parameters that are no ascending list, one for each point.
+    #[error("parameter {index} is missing, not finite, or not above the one before it")]
+    Parameter {
+        /// The parameter, counted from zero.
+        index: usize,
+    },
 }
 
 /// Coordinates beyond this are refused. Larger: sixth powers of lengths, as in the torsion, overflow. Smaller: nothing
@@ -77,6 +83,30 @@ impl CubicSpline {
         end_condition: EndCondition,
     ) -> Result<Self, SplineError> {
         let spacings = spacings(points, parametrization, false)?;
+        Ok(Self::open_with(points, &spacings, end_condition))
+    }
+
+    /// The open spline that is at each of `points` at the parameter given with it; the first counts as zero. Neighbors may
+    /// coincide.
+    ///
+    /// Splines with the same parameters depend linearly on their points.
+    ///
+    /// # Errors
+    /// Fewer than two points, a coordinate that is not finite, or a [parameter](SplineError::Parameter) that is missing, is
+    /// not finite, or does not ascend.
+    pub fn open_at(points: &[DVec3], parameters: &[f64], end_condition: EndCondition) -> Result<Self, SplineError> {
+        check_points(points, 2)?;
+        let ascends = |index: usize| {
+            parameters.get(index).is_some_and(|p| p.is_finite() && (index == 0 || *p > parameters[index - 1]))
+        };
+        if let Some(index) = (0..points.len()).find(|&index| !ascends(index)) {
+            return Err(SplineError::Parameter { index });
+        }
+        let spacings: Vec<f64> = parameters[..points.len()].windows(2).map(|pair| pair[1] - pair[0]).collect();
+        Ok(Self::open_with(points, &spacings, end_condition))
+    }
+
+    fn open_with(points: &[DVec3], spacings: &[f64], end_condition: EndCondition) -> Self {
         let count = points.len();
         let slopes: Vec<DVec3> = (0..count - 1).map(|i| (points[i + 1] - points[i]) / spacings[i]).collect();
         // Second derivatives at the points; rows 1 … count − 2 of the system are the continuity of the first
@@ -116,7 +146,7 @@ impl CubicSpline {
                     seconds[inner] + (seconds[inner] - seconds[inner - 1]) * (spacings[inner] / spacings[inner - 1]);
             }
         }
-        Ok(Self::from_seconds(points, &spacings, &slopes, &seconds, false))
+        Self::from_seconds(points, spacings, &slopes, &seconds, false)
     }
 
     /// The closed spline through `points`; the last point is not a copy of the first.
@@ -150,6 +180,26 @@ impl CubicSpline {
     /// Parameters of the points, ascending from zero; on a closed spline the first point comes again at the end.
     pub fn knots(&self) -> &[f64] {
         &self.knots
+    }
+
+    /// Bézier points of each piece: the piece lies in their convex hull.
+    pub fn control_points(&self) -> impl Iterator<Item = [DVec3; 4]> + '_ {
+        self.knots.windows(2).zip(&self.pieces).map(|(knots, [a, b, c, d])| {
+            let w = knots[1] - knots[0];
+            let [b, c, d] = [*b * w, *c * (w * w), *d * (w * w * w)];
+            [*a, *a + b / 3.0, *a + (2.0 * b + c) / 3.0, *a + b + c + d]
+        })
+    }
+
+    /// Each point moved to that of `other` at the same parameter by `share` of the way. Where both splines go through points
+    /// at the same parameters, this is the spline through the points between.
+    ///
+    /// # Panics
+    /// If the parameters of the two are not the same.
+    pub fn blend(&self, other: &Self, share: f64) -> Self {
+        assert!(self.knots == other.knots && self.closed == other.closed, "splines with the same parameters");
+        let blend = |(a, b): (&[DVec3; 4], &[DVec3; 4])| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share);
+        Self { pieces: self.pieces.iter().zip(&other.pieces).map(blend).collect(), ..self.clone() }
     }
 
     /// Piece and local parameter of a parameter, which is clamped (open) or wrapped (closed) into the domain.
@@ -194,17 +244,8 @@ impl Curve for CubicSpline {
 
 /// Parameter steps between neighbors.
 fn spacings(points: &[DVec3], parametrization: Parametrization, closed: bool) -> Result<Vec<f64>, SplineError> {
-    let needed = if closed { 3 } else { 2 };
+    check_points(points, if closed { 3 } else { 2 })?;
     let count = points.len();
-    if count < needed {
-        return Err(SplineError::TooFewPoints { count, needed });
-    }
-    // A comparison that is false for NaN.
-    if let Some(index) =
-        points.iter().position(|point| !(point.abs().max_element() <= COORDINATE_LIMIT && point.is_finite()))
-    {
-        return Err(SplineError::NotFinite { index });
-    }
     let segments = if closed { count } else { count - 1 };
     (0..segments)
         .map(|index| {
@@ -219,6 +260,18 @@ fn spacings(points: &[DVec3], parametrization: Parametrization, closed: bool) ->
             })
         })
         .collect()
+}
+
+fn check_points(points: &[DVec3], needed: usize) -> Result<(), SplineError> {
+    let count = points.len();
+    if count < needed {
+        return Err(SplineError::TooFewPoints { count, needed });
+    }
+    // A comparison that is false for NaN.
+    match points.iter().position(|point| !(point.abs().max_element() <= COORDINATE_LIMIT && point.is_finite())) {
+        Some(index) => Err(SplineError::NotFinite { index }),
+        None => Ok(()),
+    }
 }
 
 /// Solves a tridiagonal system in place by elimination without pivoting, which is stable for these dominant diagonals.
@@ -349,6 +402,48 @@ mod tests {
         assert!((parabola.jet(0.0).second - parabola.jet(2.0).second).length() < 1e-15);
         let two = CubicSpline::open(&three[..2], Parametrization::Centripetal, EndCondition::NotAKnot).unwrap();
         assert!((two.position(0.5 * two.domain().1) - DVec3::new(0.5, 0.5, 0.0)).length() < 1e-15);
+    }
+
+    #[test]
+    fn splines_at_the_same_parameters_depend_linearly_on_their_points() {
+        let (_, start) = helix_points(6);
+        let end: Vec<DVec3> = start.iter().map(|p| DVec3::new(p.y, 2.0 * p.z, p.x * p.x)).collect();
+        let parameters = [0.0, 0.4, 1.0, 1.3, 2.0, 2.6];
+        let through = |points: &[DVec3]| CubicSpline::open_at(points, &parameters, EndCondition::Natural).unwrap();
+        let between: Vec<DVec3> = start.iter().zip(&end).map(|(a, b)| a.lerp(*b, 0.3)).collect();
+        let (blend, expected) = (through(&start).blend(&through(&end), 0.3), through(&between));
+        for i in 0..=50 {
+            let parameter = 2.6 * f64::from(i) / 50.0;
+            // A few roundings of numbers of size one.
+            assert!((blend.position(parameter) - expected.position(parameter)).length() < 1e-14);
+        }
+        let centripetal = CubicSpline::open(&start, Parametrization::Centripetal, EndCondition::Natural).unwrap();
+        assert_eq!(CubicSpline::open_at(&start, centripetal.knots(), EndCondition::Natural).unwrap().knots().len(), 6);
+    }
+
+    #[test]
+    fn pieces_lie_in_the_hulls_of_their_control_points() {
+        let (_, points) = helix_points(5);
+        let spline = CubicSpline::open(&points, Parametrization::Centripetal, EndCondition::Natural).unwrap();
+        for (piece, [a, b, c, d]) in spline.control_points().enumerate() {
+            let (start, end) = (spline.knots()[piece], spline.knots()[piece + 1]);
+            for t in [0.0, 0.2, 0.7, 1.0] {
+                // De Casteljau.
+                let [e, f, g] = [a.lerp(b, t), b.lerp(c, t), c.lerp(d, t)];
+                let point = e.lerp(f, t).lerp(f.lerp(g, t), t);
+                assert!((point - spline.position(start + (end - start) * t)).length() < 1e-14, "{piece} {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn bad_parameters_are_named() {
+        let points = [DVec3::X, DVec3::X, DVec3::Y];
+        let at = |parameters: &[f64]| CubicSpline::open_at(&points, parameters, EndCondition::Natural);
+        assert!(at(&[0.0, 1.0, 2.0]).is_ok());
+        assert_eq!(at(&[0.0, 1.0]).unwrap_err(), SplineError::Parameter { index: 2 });
+        assert_eq!(at(&[0.0, 1.0, 1.0]).unwrap_err(), SplineError::Parameter { index: 2 });
+        assert_eq!(at(&[0.0, f64::NAN, 1.0]).unwrap_err(), SplineError::Parameter { index: 1 });
     }
 
     #[test]
