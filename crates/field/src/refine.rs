@@ -1,4 +1,4 @@
-//! Refinement: splits the mesh at rest until its flat triangles stand for the curved image well enough.
+//! Refinement: splits the base of the flow until its flat triangles stand for the curved image well enough.
 //!
 //! Three things split an edge: the image of its midpoint lies far from the middle of its ends; its image is long; or its
 //! triangle holds so much of the volume between flat and curved that the whole would miss the volume asked for.
@@ -39,7 +39,7 @@ pub(crate) struct Criteria {
     volume: f64,
     deviation: f64,
     max_edge: f64,
-    /// Length at rest of edges that are not split any more.
+    /// Length in the base of edges that are not split any more.
     shortest: f64,
     max_triangles: usize,
 }
@@ -61,7 +61,7 @@ pub(crate) struct Refinement {
 /// what a defect would keep going.
 const MAX_ROUNDS: usize = 40;
 
-/// An edge at rest of this share of the deviation allowed, whose image still deviates, is torn by a jump of the velocity: on
+/// An edge of the base of this share of the deviation allowed, whose image still deviates, is torn by a jump of the velocity: on
 /// the medial axis of a concave tool, or of a thin one whose profile acts inside. Larger stops before strong but smooth
 /// stretching is followed; smaller spends ever more triangles along the tear.
 const TORN: f64 = 0.25;
@@ -201,7 +201,7 @@ pub(crate) fn refine(
     Ok(refinement)
 }
 
-/// Splits triangles whose images cross although their rests do not, as long as that helps.
+/// Splits triangles whose images cross although those in the base do not, as long as that helps.
 ///
 /// The exact image of a surface that does not cross itself does not either, so what crosses are flat triangles that cut
 /// through a neighboring sheet, or the error of the time step, which splitting does not mend.
@@ -227,11 +227,11 @@ pub(crate) fn untangle(
         let mut coarsest: FxHashMap<u32, f64> = FxHashMap::default();
         for &index in &crossing {
             let length = coarsest.entry(mesh.triangles[index as usize].parent).or_insert(0.0);
-            *length = length.max(mesh.longest_rest_edge(index as usize));
+            *length = length.max(mesh.longest_base_edge(index as usize));
         }
         let is_wanted = |mesh: &Tessellation, index: usize| {
             let coarsest = coarsest.get(&mesh.triangles[index].parent);
-            coarsest.is_some_and(|&length| mesh.longest_rest_edge(index) > AS_COARSE * length)
+            coarsest.is_some_and(|&length| mesh.longest_base_edge(index) > AS_COARSE * length)
         };
         refinement.evaluations += mesh.track(strokes, is_wanted, monitor)?;
         let mut is_split = vec![false; mesh.midpoint_count()];
@@ -255,8 +255,8 @@ pub(crate) fn untangle(
 /// least, as M.-C. Rivara, *Algorithms for refining triangular grids suitable for adaptive and multigrid techniques*, 1984.
 ///
 /// Without this a triangle can lose its two shorter edges again and again, its longest always just within the criteria, and
-/// shrink to a sliver along it, to no end. Where the image is so stretched that this happens at rest all the same, the longest
-/// edge at rest is split.
+/// shrink to a sliver along it, to no end. Where the image is so stretched that this happens in the base all the same, the
+/// longest edge there is split.
 fn add_longest_edges(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
@@ -274,8 +274,8 @@ fn add_longest_edges(
                 continue;
             }
             let Some(midpoints) = mesh.midpoints_of(index) else { continue };
-            let lengths = if mesh.is_sliver_at_rest(index) {
-                edge_lengths(&mesh.rest_of(index))
+            let lengths = if mesh.is_sliver_in_base(index) {
+                edge_lengths(&mesh.base_of(index))
             } else {
                 edge_lengths(&mesh.image_of(index))
             };
@@ -291,7 +291,7 @@ fn add_longest_edges(
 }
 
 fn has_moved(mesh: &Tessellation, triangle: usize) -> bool {
-    mesh.triangles[triangle].vertices.iter().any(|&vertex| mesh.image[vertex as usize] != mesh.rest[vertex as usize])
+    mesh.triangles[triangle].vertices.iter().any(|&vertex| mesh.image[vertex as usize] != mesh.base[vertex as usize])
 }
 
 /// By number of midpoint, whether its edge is to be split.
@@ -300,10 +300,10 @@ fn edges_to_split(mesh: &Tessellation, criteria: &Criteria, gains: &[f64], facet
     for index in 0..mesh.triangles.len() {
         let (Some(curved), Some(midpoints)) = (mesh.curved(index), mesh.midpoints_of(index)) else { continue };
         let (deviations, lengths) = (curved.deviations(), curved.lengths());
-        let rest_lengths = edge_lengths(&mesh.rest_of(index));
+        let base_lengths = edge_lengths(&mesh.base_of(index));
         for edge in 0..3 {
             let is_wanted = deviations[edge].length() > criteria.deviation || lengths[edge] > criteria.max_edge;
-            is_split[midpoints[edge] as usize] |= is_wanted && rest_lengths[edge] > criteria.shortest;
+            is_split[midpoints[edge] as usize] |= is_wanted && base_lengths[edge] > criteria.shortest;
         }
     }
     for index in triangles_to_split(gains, facet_error, criteria.volume) {

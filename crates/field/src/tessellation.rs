@@ -1,7 +1,9 @@
 //! A mesh at rest and its image under the flow, split together.
 //!
-//! A vertex that is inserted lies in the middle of an edge of the mesh at rest, and its image is where the flow carries that
-//! point, never the middle of the images: that is what brings the surface closer to the true image.
+//! A vertex that is inserted lies in the middle of an edge of the *base*, and its image is where the flow carries that point,
+//! never the middle of the images: that is what brings the surface closer to the true image. The base is the mesh at rest
+//! until something that is no flow acts: then the image [is frozen](Tessellation::freeze) and becomes the base of what follows,
+//! while the rest goes on to tell where every vertex came from.
 
 use glam::DVec3;
 use isochore_mesh::{Cancelled, Monitor, SelfIntersectionError, SelfIntersections, SubTriangle, Subdivision, TriMesh};
@@ -16,10 +18,13 @@ const UNTRACKED: u32 = u32::MAX;
 /// and thin at rest for slivers; smaller lets real ones get thinner before they are halved.
 const SLIVER: f64 = 0.03;
 
-/// A mesh at rest, its image, and the midpoints of those edges that are followed through the flow.
+/// A mesh at rest, its base and image, and the midpoints of those edges that are followed through the flow.
 #[derive(Debug, Clone)]
 pub(crate) struct Tessellation {
+    /// Where the vertices lie on the mesh as read.
     pub(crate) rest: Vec<DVec3>,
+    /// Where the flow that leads to the image set out.
+    pub(crate) base: Vec<DVec3>,
     pub(crate) image: Vec<DVec3>,
     pub(crate) triangles: Vec<SubTriangle>,
     /// For each triangle the midpoints of its edges 01, 12 and 20.
@@ -27,11 +32,11 @@ pub(crate) struct Tessellation {
     midpoints: Midpoints,
 }
 
-/// Midpoints of edges at rest, and their images.
+/// Midpoints of edges of the base, and their images.
 #[derive(Debug, Clone, Default)]
 struct Midpoints {
     of_edge: FxHashMap<[u32; 2], u32>,
-    rest: Vec<DVec3>,
+    base: Vec<DVec3>,
     image: Vec<DVec3>,
 }
 
@@ -53,11 +58,19 @@ impl Tessellation {
             .collect();
         Self {
             rest: mesh.positions.clone(),
+            base: mesh.positions.clone(),
             image: mesh.positions.clone(),
             midpoints_of: vec![[UNTRACKED; 3]; triangles.len()],
             triangles,
             midpoints: Midpoints::default(),
         }
+    }
+
+    /// Makes the image the base of what follows; no midpoint is followed any more.
+    pub(crate) fn freeze(&mut self) {
+        self.base.clone_from(&self.image);
+        self.midpoints = Midpoints::default();
+        self.midpoints_of.fill([UNTRACKED; 3]);
     }
 
     /// Vertex indices of all triangles.
@@ -77,7 +90,8 @@ impl Tessellation {
             + flow::advance(&mut self.midpoints.image, stroke, monitor)?)
     }
 
-    /// From now on follows the edge midpoints of every triangle for which `is_wanted`, carried through the `strokes` so far.
+    /// From now on follows the edge midpoints of every triangle for which `is_wanted`, carried through the `strokes` since the
+    /// base.
     /// Returns the evaluations of the fields.
     pub(crate) fn track(
         &mut self,
@@ -85,12 +99,12 @@ impl Tessellation {
         is_wanted: impl Fn(&Self, usize) -> bool,
         monitor: &dyn Monitor,
     ) -> Result<u64, Cancelled> {
-        let known = self.midpoints.rest.len();
+        let known = self.midpoints.base.len();
         let mut is_tracked_vertex = vec![false; self.rest.len()];
         for index in 0..self.triangles.len() {
             let vertices = self.triangles[index].vertices;
             if self.midpoints_of[index].contains(&UNTRACKED) && is_wanted(self, index) {
-                self.midpoints_of[index] = edges(vertices).map(|edge| self.midpoints.find_or_insert(edge, &self.rest));
+                self.midpoints_of[index] = edges(vertices).map(|edge| self.midpoints.find_or_insert(edge, &self.base));
             }
             if !self.midpoints_of[index].contains(&UNTRACKED) {
                 vertices.into_iter().for_each(|vertex| is_tracked_vertex[vertex as usize] = true);
@@ -104,13 +118,13 @@ impl Tessellation {
                 }
             }
         }
-        self.midpoints.image.extend_from_slice(&self.midpoints.rest[known..]);
+        self.midpoints.image.extend_from_slice(&self.midpoints.base[known..]);
         flow::advance(&mut self.midpoints.image[known..], strokes, monitor)
     }
 
     /// The number of midpoints that are or were followed; they are numbered below this.
     pub(crate) fn midpoint_count(&self) -> usize {
-        self.midpoints.rest.len()
+        self.midpoints.base.len()
     }
 
     /// The midpoints of a triangle's edges 01, 12 and 20, if all are followed.
@@ -124,21 +138,21 @@ impl Tessellation {
         self.triangles[triangle].vertices.map(|vertex| self.image[vertex as usize])
     }
 
-    /// Corners of a triangle at rest.
-    pub(crate) fn rest_of(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].vertices.map(|vertex| self.rest[vertex as usize])
+    /// Corners of a triangle in the base.
+    pub(crate) fn base_of(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].vertices.map(|vertex| self.base[vertex as usize])
     }
 
-    /// Whether a triangle at rest is much lower than long.
-    pub(crate) fn is_sliver_at_rest(&self, triangle: usize) -> bool {
-        let [a, b, c] = self.rest_of(triangle);
-        let longest = self.longest_rest_edge(triangle);
+    /// Whether a triangle of the base is much lower than long.
+    pub(crate) fn is_sliver_in_base(&self, triangle: usize) -> bool {
+        let [a, b, c] = self.base_of(triangle);
+        let longest = self.longest_base_edge(triangle);
         (b - a).cross(c - a).length() < SLIVER * longest * longest
     }
 
-    /// Length at rest of the longest edge of a triangle.
-    pub(crate) fn longest_rest_edge(&self, triangle: usize) -> f64 {
-        edge_lengths(&self.rest_of(triangle)).into_iter().fold(0.0, f64::max)
+    /// Length in the base of the longest edge of a triangle.
+    pub(crate) fn longest_base_edge(&self, triangle: usize) -> f64 {
+        edge_lengths(&self.base_of(triangle)).into_iter().fold(0.0, f64::max)
     }
 
     /// The triangle's image with its midpoints, if all are followed.
@@ -147,16 +161,17 @@ impl Tessellation {
         Some(CurvedTriangle { corners: self.image_of(triangle), midpoints })
     }
 
-    /// Triangles whose images cross others, where the triangles of the mesh as read that hold them do not; in ascending order.
+    /// Triangles whose images cross others, while in the base nothing crosses within the triangles of the mesh as read that
+    /// hold them; in ascending order.
     pub(crate) fn new_crossings(&self, monitor: &dyn Monitor) -> Result<Vec<u32>, Cancelled> {
         let found = crossing_pairs(&self.image, self.indices(), monitor)?;
         if found.is_empty() {
             return Ok(Vec::new());
         }
-        let at_rest: FxHashSet<[u32; 2]> =
-            crossing_pairs(&self.rest, self.indices(), monitor)?.into_iter().map(|pair| self.parents(pair)).collect();
+        let in_base: FxHashSet<[u32; 2]> =
+            crossing_pairs(&self.base, self.indices(), monitor)?.into_iter().map(|pair| self.parents(pair)).collect();
         let mut crossing: Vec<u32> =
-            found.into_iter().filter(|&pair| !at_rest.contains(&self.parents(pair))).flatten().collect();
+            found.into_iter().filter(|&pair| !in_base.contains(&self.parents(pair))).flatten().collect();
         crossing.sort_unstable();
         crossing.dedup();
         Ok(crossing)
@@ -195,12 +210,15 @@ impl Tessellation {
         let mut triangles = Vec::with_capacity(self.triangles_after(is_split));
         let mut midpoints_of = Vec::with_capacity(triangles.capacity());
         for (triangle, midpoints) in self.triangles.iter().zip(&self.midpoints_of) {
-            let inserted = midpoints.map(|midpoint| {
+            let edges = edges(triangle.vertices);
+            let inserted: [Option<u32>; 3] = std::array::from_fn(|edge| {
+                let midpoint = midpoints[edge];
                 chosen(is_split, midpoint).then(|| {
                     let vertex = &mut vertex_of[midpoint as usize];
                     if *vertex == UNTRACKED {
                         *vertex = self.rest.len() as u32;
-                        self.rest.push(self.midpoints.rest[midpoint as usize]);
+                        self.rest.push(middle(edges[edge], &self.rest));
+                        self.base.push(self.midpoints.base[midpoint as usize]);
                         self.image.push(self.midpoints.image[midpoint as usize]);
                     }
                     *vertex
@@ -225,10 +243,10 @@ impl Midpoints {
         self.of_edge.get(&[a.min(b), a.max(b)]).copied()
     }
 
-    fn find_or_insert(&mut self, [a, b]: [u32; 2], rest: &[DVec3]) -> u32 {
+    fn find_or_insert(&mut self, [a, b]: [u32; 2], base: &[DVec3]) -> u32 {
         *self.of_edge.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-            self.rest.push(0.5 * (rest[a as usize] + rest[b as usize]));
-            self.rest.len() as u32 - 1
+            self.base.push(middle([a, b], base));
+            self.base.len() as u32 - 1
         })
     }
 }
@@ -251,6 +269,11 @@ fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }
 
+/// The middle of an edge; it has the same bits from either end.
+fn middle([a, b]: [u32; 2], positions: &[DVec3]) -> DVec3 {
+    0.5 * (positions[a as usize] + positions[b as usize])
+}
+
 fn chosen(is_split: &[bool], midpoint: u32) -> bool {
     midpoint != UNTRACKED && is_split[midpoint as usize]
 }
@@ -265,7 +288,7 @@ fn split_triangle(triangle: &SubTriangle, inserted: [Option<u32>; 3], image: &[D
     };
     let turned = |index: usize| (index + turns) % 3;
     let corner = |index: usize| (triangle.vertices[turned(index)], triangle.corners[turned(index)]);
-    let middle = |index: usize| {
+    let inserted_at = |index: usize| {
         let weights = 0.5 * (triangle.corners[turned(index)] + triangle.corners[turned(index + 1)]);
         inserted[turned(index)].map(|vertex| (vertex, weights))
     };
@@ -273,7 +296,7 @@ fn split_triangle(triangle: &SubTriangle, inserted: [Option<u32>; 3], image: &[D
         parts.push(SubTriangle { vertices: part.map(|p| p.0), corners: part.map(|p| p.1), parent: triangle.parent });
     };
     let [a, b, c] = [corner(0), corner(1), corner(2)];
-    match (middle(0), middle(1), middle(2)) {
+    match (inserted_at(0), inserted_at(1), inserted_at(2)) {
         (Some(ab), Some(bc), Some(ca)) => {
             push([a, ab, ca]);
             push([ab, b, bc]);
