@@ -1,4 +1,4 @@
-//! The deformation of a mesh by strokes: advect, refine, lock.
+//! The deformation of a mesh by strokes: advect, refine, stamp, lock.
 
 use std::time::Instant;
 
@@ -6,8 +6,9 @@ use glam::DVec3;
 use isochore_mesh::{Cancelled, ClosedMesh, MeshError, Monitor, TriMesh, signed_volume};
 
 use crate::{
-    Note, Receipt, RefineOptions, Stroke, StrokeReceipt,
+    Note, Receipt, RefineOptions, Stamp, StampError, Stroke, StrokeReceipt,
     lock::lock_volume,
+    press::{PressError, press},
     refine::{Criteria, Refinement, refine, resolve_field, untangle},
     tessellation::Tessellation,
 };
@@ -53,6 +54,14 @@ pub enum DeformError {
         /// Index of the vertex, inserted ones included.
         vertex: usize,
     },
+    /// A stamp cannot be pressed.
+    #[error("stroke {stroke}: {source}")]
+    Stamp {
+        /// Index of the stroke, from 0.
+        stroke: usize,
+        /// Why not.
+        source: StampError,
+    },
     /// The volume of the mesh as given is no number.
     #[error("the volume is beyond the range of numbers; coordinates are too large")]
     VolumeOverflow,
@@ -67,7 +76,8 @@ const NOTABLE_FACET_ERROR: f64 = 5e-3;
 
 /// Deforms `mesh` by the strokes, one after the other.
 ///
-/// Every vertex, inserted ones included, follows the flow from where it lies on the mesh as given. The flow keeps volumes up
+/// Every vertex, inserted ones included, follows the flow from where it lies on the mesh as given, or on the mesh that a stamp
+/// left: what follows a stamp takes its flat triangles for the true surface. The flow keeps volumes up
 /// to the error of the time step (order four); flat triangles do up to the facet error, which refinement holds below
 /// [`RefineOptions::volume`] by an estimate; the lock gives back what is left. A volume is kept only where the mesh is closed,
 /// and self-intersections of the mesh as given stay.
@@ -87,16 +97,25 @@ pub fn deform(
     if volume_before.is_some_and(|volume| !volume.is_finite()) {
         return Err(DeformError::VolumeOverflow);
     }
+    let has_volume = volume_before.is_some_and(|volume| volume != 0.0);
+    if let Some(stroke) = strokes.iter().position(|stroke| matches!(stroke, Stroke::Stamp(_)) && !has_volume) {
+        return Err(DeformError::Stamp { stroke, source: StampError::NoVolume });
+    }
     let mut receipt = Receipt { volume_before, ..Receipt::default() };
     let mut tessellation = Tessellation::new(mesh);
     let criteria = options.refine.as_ref().map(|refine| Criteria::new(refine, &tessellation, volume_before));
 
     let mut facet_error = 0.0;
-    for index in 0..strokes.len() {
-        facet_error = apply(&mut tessellation, &strokes[..=index], criteria.as_ref(), &mut receipt, monitor)?;
-    }
-    if let Some(criteria) = &criteria {
-        facet_error = separate(&mut tessellation, strokes, criteria, &mut receipt, monitor)?.unwrap_or(facet_error);
+    // A stamp is no flow: it acts on the surface that those before it leave, and those after it set out from what it leaves.
+    for phase in strokes.split_inclusive(|stroke| matches!(stroke, Stroke::Stamp(_))) {
+        let (flows, stamp) = match phase {
+            [flows @ .., Stroke::Stamp(stamp)] => (flows, Some(stamp)),
+            flows => (flows, None),
+        };
+        facet_error += flow(&mut tessellation, flows, criteria.as_ref(), &mut receipt, monitor)?;
+        if let Some(stamp) = stamp {
+            imprint(&mut tessellation, stamp, criteria.as_ref(), &mut receipt, monitor)?;
+        }
     }
     if let Some(vertex) = tessellation.image.iter().position(|image| !image.is_finite()) {
         return Err(DeformError::Overflow { vertex });
@@ -132,6 +151,62 @@ pub fn deform(
     Ok(Deformed { mesh, rest, receipt })
 }
 
+/// Carries the mesh through all `strokes`, none of which is a stamp. Returns the facet error.
+fn flow(
+    mesh: &mut Tessellation,
+    strokes: &[Stroke],
+    criteria: Option<&Criteria>,
+    receipt: &mut Receipt,
+    monitor: &dyn Monitor,
+) -> Result<f64, Cancelled> {
+    let mut facet_error = 0.0;
+    for index in 0..strokes.len() {
+        facet_error = apply(mesh, &strokes[..=index], criteria, receipt, monitor)?;
+    }
+    match criteria {
+        Some(criteria) => Ok(separate(mesh, strokes, criteria, receipt, monitor)?.unwrap_or(facet_error)),
+        None => Ok(facet_error),
+    }
+}
+
+/// Presses a stamp into the image and writes its receipt.
+fn imprint(
+    mesh: &mut Tessellation,
+    stamp: &Stamp,
+    criteria: Option<&Criteria>,
+    receipt: &mut Receipt,
+    monitor: &dyn Monitor,
+) -> Result<(), DeformError> {
+    let stroke = receipt.strokes.len();
+    let begin = Instant::now();
+    let before = mesh.image.clone();
+    let pressed = press(mesh, stamp, criteria, monitor).map_err(|error| match error {
+        PressError::Cancelled(cancelled) => DeformError::Cancelled(cancelled),
+        PressError::Stamp(source) => DeformError::Stamp { stroke, source },
+    })?;
+    let known = before.len();
+    let moved = count_different(&before, &mesh.image) + count_different(&mesh.rest[known..], &mesh.image[known..]);
+    if let Some(criteria) = criteria.filter(|_| pressed.refinement.is_limited) {
+        receipt.notes.push(Note::TriangleLimit { stroke, max_triangles: criteria.max_triangles() });
+    }
+    receipt.notes.extend((!pressed.has_touched).then_some(Note::StampMissed { stroke }));
+    receipt.notes.extend(pressed.is_through.then_some(Note::StampThrough { stroke }));
+    let seconds = begin.elapsed().as_secs_f64();
+    receipt.seconds.advect += seconds;
+    conclude(
+        mesh,
+        receipt,
+        StrokeReceipt {
+            seconds,
+            evaluations: pressed.refinement.evaluations,
+            moved,
+            inserted: pressed.refinement.inserted,
+            volume_change: None,
+        },
+    );
+    Ok(())
+}
+
 /// Carries the mesh through the last of `strokes`, refines it, and writes the stroke's receipt. Returns the facet error.
 fn apply(
     mesh: &mut Tessellation,
@@ -160,20 +235,32 @@ fn apply(
     receipt.seconds.advect += (advect_end - resolve_end).as_secs_f64();
     receipt.seconds.refine += (resolve_end - begin + (end - advect_end)).as_secs_f64();
     if let Some(criteria) = criteria.filter(|_| resolved.is_limited || refined.is_limited) {
-        receipt.notes.push(Note::TriangleLimit { stroke: past.len(), max_triangles: criteria.max_triangles() });
+        receipt
+            .notes
+            .push(Note::TriangleLimit { stroke: receipt.strokes.len(), max_triangles: criteria.max_triangles() });
     }
-    let volume_so_far: f64 = receipt.strokes.iter().filter_map(|stroke| stroke.volume_change).sum();
-    receipt.strokes.push(StrokeReceipt {
-        seconds: (end - begin).as_secs_f64(),
-        evaluations: resolved.evaluations + evaluations + refined.evaluations,
-        moved,
-        inserted: resolved.inserted + refined.inserted,
-        volume_change: receipt
-            .volume_before
-            .and_then(|volume| relative_change(volume, signed_volume(&mesh.image, &mesh.indices())))
-            .map(|change| change - volume_so_far),
-    });
+    conclude(
+        mesh,
+        receipt,
+        StrokeReceipt {
+            seconds: (end - begin).as_secs_f64(),
+            evaluations: resolved.evaluations + evaluations + refined.evaluations,
+            moved,
+            inserted: resolved.inserted + refined.inserted,
+            volume_change: None,
+        },
+    );
     Ok(refined.facet_error)
+}
+
+/// Adds a stroke to the receipt, with the change of the volume since the one before.
+fn conclude(mesh: &Tessellation, receipt: &mut Receipt, mut stroke: StrokeReceipt) {
+    let volume_so_far: f64 = receipt.strokes.iter().filter_map(|stroke| stroke.volume_change).sum();
+    stroke.volume_change = receipt
+        .volume_before
+        .and_then(|volume| relative_change(volume, signed_volume(&mesh.image, &mesh.indices())))
+        .map(|change| change - volume_so_far);
+    receipt.strokes.push(stroke);
 }
 
 /// Splits what crosses itself in the end. Returns the facet error, if any was split.

@@ -16,11 +16,28 @@ const CHUNK: usize = 256;
 /// not depend on the number of threads nor on the order of the points.
 ///
 /// # Errors
-/// [`Cancelled`] when the monitor says so.
-pub fn flow_points(points: &[DVec3], strokes: &[Stroke], monitor: &dyn Monitor) -> Result<Vec<DVec3>, Cancelled> {
+/// [`FlowError`].
+pub fn flow_points(points: &[DVec3], strokes: &[Stroke], monitor: &dyn Monitor) -> Result<Vec<DVec3>, FlowError> {
+    if let Some(stroke) = strokes.iter().position(|stroke| matches!(stroke, Stroke::Stamp(_))) {
+        return Err(FlowError::Stamp { stroke });
+    }
     let mut carried = points.to_vec();
     advance(&mut carried, strokes, monitor)?;
     Ok(carried)
+}
+
+/// Why points cannot be carried.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum FlowError {
+    /// The monitor stopped it.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A stroke needs a surface.
+    #[error("stroke {stroke} is a stamp, which presses into a surface and raises it elsewhere; points alone have none")]
+    Stamp {
+        /// Index of the stroke, from 0.
+        stroke: usize,
+    },
 }
 
 /// Carries `points` through `strokes` in place, and returns the number of evaluations of the fields.

@@ -8,6 +8,7 @@
 //! - The *rest* of a mesh is the mesh as read, the *image* what the flow map makes of it. Between vertices the image of a
 //!   flat triangle is curved; the volume between it and the flat triangle that replaces it is the *facet error*.
 
+mod balance;
 mod deform;
 mod facet_error;
 mod field;
@@ -19,6 +20,7 @@ mod flux;
 mod lock;
 mod moving_tool;
 mod pose;
+mod press;
 mod profile;
 mod receipt;
 mod refine;
@@ -32,16 +34,17 @@ mod tool;
 
 pub use deform::{DeformError, DeformOptions, Deformed, deform};
 pub use field::{Field, FieldBlock, MovingField, NO_CORE};
-pub use flow::flow_points;
+pub use flow::{FlowError, flow_points};
 pub use moving_tool::MovingTool;
 pub use pose::{BodyTwist, Pose, rotation_from_vector};
+pub use press::StampError;
 pub use profile::{Profile, UnknownProfile};
 pub use receipt::{Note, Receipt, StageSeconds, StrokeReceipt};
 pub use refine::RefineOptions;
 pub use rigid_field::{RigidField, VelocityBlock};
 pub use ring::{Ring, RingError, RingShape};
 pub use scalar_block::ScalarBlock;
-pub use stroke::{Bend, FieldStroke, Move, Stroke, StrokeError, Twist};
+pub use stroke::{Bend, FieldStroke, Move, Stamp, Stroke, StrokeError, Twist};
 pub use tool::{Tool, ToolError};
 
 #[cfg(doctest)]

@@ -75,6 +75,16 @@ pub enum Note {
         /// Largest ratio of a vertex' displacement to the shortest edge at it.
         ratio: f64,
     },
+    /// A stamp went its way and met nothing.
+    StampMissed {
+        /// Index of the stroke, from 0.
+        stroke: usize,
+    },
+    /// A stamp touched the surface from both sides: it went through a sheet, which then lies on itself.
+    StampThrough {
+        /// Index of the stroke, from 0.
+        stroke: usize,
+    },
     /// The lock was asked for and found nothing to hold: nothing had moved, or the displacement does not change the volume.
     LockSkipped,
     /// The lock was asked for, and the mesh is open.
@@ -96,6 +106,11 @@ impl fmt::Display for Note {
                     "the lock moved a vertex by {ratio:.2} of the shortest edge at it; refine more before locking"
                 )
             }
+            Self::StampMissed { stroke } => write!(f, "the stamp of stroke {stroke} touched nothing"),
+            Self::StampThrough { stroke } => write!(
+                f,
+                "the stamp of stroke {stroke} went through the surface to its far side, which then lies on itself; press less deep"
+            ),
             Self::LockSkipped => f.write_str("the lock was skipped: nothing moved that the volume depends on"),
             Self::LockNeedsClosed => f.write_str("the lock was skipped: the mesh is open and has no volume"),
         }

@@ -116,6 +116,13 @@ impl Criteria {
 }
 
 impl Refinement {
+    /// Adds up what was spent.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.inserted += other.inserted;
+        self.evaluations += other.evaluations;
+        self.is_limited |= other.is_limited;
+    }
+
     /// Splits the chosen edges, unless that would pass the limit on triangles; returns whether it did.
     fn split(&mut self, mesh: &mut Tessellation, is_split: &[bool], criteria: &Criteria) -> bool {
         self.is_limited = mesh.triangles_after(is_split) > criteria.max_triangles;
@@ -134,35 +141,51 @@ pub(crate) fn resolve_field(
     criteria: &Criteria,
     monitor: &dyn Monitor,
 ) -> Result<Refinement, Cancelled> {
-    let mut refinement = Refinement::default();
     let coarse = stroke.feature_size();
     if coarse == f64::INFINITY {
-        return Ok(refinement);
+        return Ok(Refinement::default());
     }
+    split_long_edges(mesh, past, criteria, monitor, |mesh| {
+        let longest_allowed = |index| {
+            let corners = mesh.image_of(index);
+            let longest = edge_lengths(&corners).into_iter().fold(0.0, f64::max);
+            let center = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let radius = corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max);
+            if longest > coarse && stroke.may_touch(center, radius) { coarse } else { f64::INFINITY }
+        };
+        (0..mesh.triangles.len()).into_par_iter().map(longest_allowed).collect()
+    })
+}
+
+/// Splits triangles until none has an edge longer than `longest_allowed` says, which is asked again after every round and
+/// answers by triangle.
+pub(crate) fn split_long_edges(
+    mesh: &mut Tessellation,
+    strokes: &[Stroke],
+    criteria: &Criteria,
+    monitor: &dyn Monitor,
+    mut longest_allowed: impl FnMut(&Tessellation) -> Vec<f64>,
+) -> Result<Refinement, Cancelled> {
+    let mut refinement = Refinement::default();
     for _ in 0..MAX_ROUNDS {
         monitor.check("refine", 0.0)?;
-        let is_coarse: Vec<bool> = (0..mesh.triangles.len())
-            .into_par_iter()
-            .map(|index| {
-                let corners = mesh.image_of(index);
-                let longest = edge_lengths(&corners).into_iter().fold(0.0, f64::max);
-                let center = (corners[0] + corners[1] + corners[2]) / 3.0;
-                let radius = corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max);
-                longest > coarse && stroke.may_touch(center, radius)
-            })
-            .collect();
-        if !is_coarse.contains(&true) {
+        let allowed = longest_allowed(mesh);
+        let is_long = |mesh: &Tessellation, index: usize| {
+            edge_lengths(&mesh.image_of(index)).into_iter().any(|length| length > allowed[index])
+        };
+        let long: Vec<usize> = (0..mesh.triangles.len()).filter(|&index| is_long(mesh, index)).collect();
+        if long.is_empty() {
             break;
         }
-        refinement.evaluations += mesh.track(past, |_, index| is_coarse[index], monitor)?;
+        refinement.evaluations += mesh.track(strokes, is_long, monitor)?;
         let mut is_split = vec![false; mesh.midpoint_count()];
-        for index in (0..mesh.triangles.len()).filter(|&index| is_coarse[index]) {
+        for index in long {
             let Some(midpoints) = mesh.midpoints_of(index) else { continue };
             for (midpoint, length) in midpoints.into_iter().zip(edge_lengths(&mesh.image_of(index))) {
-                is_split[midpoint as usize] |= length > coarse;
+                is_split[midpoint as usize] |= length > allowed[index];
             }
         }
-        refinement.evaluations += add_longest_edges(mesh, past, &mut is_split, monitor)?;
+        refinement.evaluations += add_longest_edges(mesh, strokes, &mut is_split, monitor)?;
         if !refinement.split(mesh, &is_split, criteria) {
             break;
         }

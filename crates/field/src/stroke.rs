@@ -4,6 +4,7 @@ mod bend;
 mod field_stroke;
 mod movement;
 mod rotation;
+mod stamp;
 mod twist;
 
 use glam::DVec3;
@@ -11,6 +12,7 @@ use glam::DVec3;
 pub use bend::Bend;
 pub use field_stroke::FieldStroke;
 pub use movement::Move;
+pub use stamp::Stamp;
 pub use twist::Twist;
 
 /// One motion that deforms what it passes through.
@@ -24,10 +26,13 @@ pub enum Stroke {
     Twist(Twist),
     /// Spheres turn about an axis, by an angle proportional to the squared radius.
     Bend(Bend),
+    /// A tool presses its shape into the surface.
+    Stamp(Stamp),
 }
 
 impl Stroke {
-    /// Carries `points` through the whole stroke and returns how many times the field was evaluated.
+    /// Carries `points` through the whole stroke and returns how many times the field was evaluated. A stamp is no flow and moves
+    /// no point by itself.
     ///
     /// Each point's way depends on that point alone: the bits do not depend on its neighbors in the slice.
     pub(crate) fn advance(&self, points: &mut [DVec3]) -> u64 {
@@ -36,6 +41,7 @@ impl Stroke {
             Self::Field(stroke) => stroke.advance(points),
             Self::Twist(stroke) => stroke.advance(points),
             Self::Bend(stroke) => stroke.advance(points),
+            Self::Stamp(_) => 0,
         }
     }
 
@@ -45,6 +51,7 @@ impl Stroke {
             Self::Move(stroke) => stroke.may_touch(center, radius),
             Self::Field(stroke) => stroke.may_touch(center, radius),
             Self::Twist(_) | Self::Bend(_) => true,
+            Self::Stamp(_) => false,
         }
     }
 
@@ -53,7 +60,7 @@ impl Stroke {
         match self {
             Self::Move(stroke) => stroke.tool().feature_size(),
             Self::Field(stroke) => stroke.feature_size(),
-            Self::Twist(_) | Self::Bend(_) => f64::INFINITY,
+            Self::Twist(_) | Self::Bend(_) | Self::Stamp(_) => f64::INFINITY,
         }
     }
 
@@ -65,6 +72,7 @@ impl Stroke {
             Self::Field(stroke) => Self::Field(stroke.truncated(fraction)),
             Self::Twist(stroke) => Self::Twist(stroke.truncated(fraction)),
             Self::Bend(stroke) => Self::Bend(stroke.truncated(fraction)),
+            Self::Stamp(stroke) => Self::Stamp(stroke.truncated(fraction)),
         }
     }
 }
@@ -84,6 +92,9 @@ pub enum StrokeError {
     /// The step is not a positive fraction.
     #[error("the step must be a positive fraction, not {0}")]
     Step(f64),
+    /// The longest edge of a footprint is not a positive length.
+    #[error("the relief must be a positive length, not {0}")]
+    Relief(f64),
     /// The path is so long for its step that it would not end.
     #[error("the way from key {key} takes {steps:.0} steps; at most {} are allowed", movement::MAX_STEPS)]
     TooManySteps {

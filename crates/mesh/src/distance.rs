@@ -29,6 +29,12 @@ pub trait Distance: Debug + Send + Sync {
         1.0
     }
 
+    /// Length below which the surface shows nothing, model units: what is this fine takes on its shape. By default an eighth of
+    /// the shortest extent; where the distance is sampled, the distance between samples.
+    fn detail(&self) -> f64 {
+        0.125 * self.bounds().size().min_element()
+    }
+
     /// Distance and gradient at one point.
     fn sample(&self, point: DVec3) -> (f64, DVec3) {
         let mut out = DistanceBlock::FAR;

@@ -214,6 +214,10 @@ impl Distance for DistanceField {
     fn lipschitz(&self) -> f64 {
         self.interpolant.lipschitz()
     }
+
+    fn detail(&self) -> f64 {
+        self.grid.cell
+    }
 }
 
 /// Gives the samples their signs.

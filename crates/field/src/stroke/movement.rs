@@ -84,6 +84,22 @@ impl Move {
         starts.map(|start| Arc::new(field(start)) as _).collect()
     }
 
+    /// Times at which the steps end, in order; the way between two keys takes one unit of time.
+    pub(crate) fn step_ends(&self) -> Vec<f64> {
+        let ends = |(key, segment): (usize, &Segment)| {
+            let count = segment.steps();
+            (1..=count).map(move |step| key as f64 + step as f64 / count as f64)
+        };
+        self.segments.iter().enumerate().flat_map(ends).collect()
+    }
+
+    /// Where the tool is at a time from zero to the number of segments.
+    pub(crate) fn pose_at(&self, time: f64) -> Pose {
+        let key = (time as usize).min(self.segments.len() - 1);
+        let since = time - key as f64;
+        if since == 1.0 { self.keys[key + 1] } else { self.keys[key].moved(&self.segments[key].twist, since) }
+    }
+
     pub(super) fn advance(&self, points: &mut [DVec3]) -> u64 {
         let mut travelers = Travelers::new(points);
         self.segments.iter().map(|segment| segment.advance(&self.tool, &mut travelers)).sum()
