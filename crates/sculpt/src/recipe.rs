@@ -17,7 +17,7 @@ pub use error::{Location, RecipeError, RecipeProblem};
 pub use shape::{
     BoxMesh, Capsule, Ellipsoid, Icosphere, MeshTool, RoundedBox, Sphere, SphereMesh, TargetShape, ToolShape, Torus,
 };
-pub use stroke::{Bend, Key, Move, Stroke, Twist};
+pub use stroke::{Bend, Key, Move, Stamp, Stroke, Twist};
 pub use tree::Override;
 
 use tree::Node;

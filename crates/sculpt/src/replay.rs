@@ -7,7 +7,7 @@ use isochore_field as field;
 use isochore_mesh::{Cancelled, DistanceFieldError, Monitor, TriMesh};
 
 use crate::{
-    recipe::{Recipe, RecipeError},
+    recipe::{Recipe, RecipeError, RecipeProblem, Stroke},
     scene::Scene,
 };
 
@@ -44,7 +44,7 @@ pub fn replay(recipe: &Recipe, meshes: &Meshes, monitor: &dyn Monitor) -> Result
 
 /// Carries `points`, in world coordinates, along the strokes of `recipe`. Its target is not looked at.
 ///
-/// A point set has no volume: the lock is left out, so that points agree with the vertices of a mesh before its lock.
+/// A point set has no surface: a stamp is refused. It has no volume: the lock is left out, so that points agree with the vertices of a mesh before its lock.
 ///
 /// # Errors
 /// [`ReplayError`], naming the key of the recipe that cannot be followed.
@@ -54,11 +54,23 @@ pub fn replay_points(
     points: &[DVec3],
     monitor: &dyn Monitor,
 ) -> Result<PointReplay, ReplayError> {
+    if let Some(index) = recipe.strokes.iter().position(|stroke| matches!(stroke, Stroke::Stamp(_))) {
+        return Err(stamp_on_points(index).into());
+    }
     let (strokes, mut warnings) = Scene::strokes(recipe, meshes, monitor)?;
     if recipe.volume.lock {
         warnings.push("points enclose no volume: the volume lock was left out".to_owned());
     }
-    Ok(PointReplay { points: field::flow_points(points, &strokes, monitor)?, warnings })
+    let points = field::flow_points(points, &strokes, monitor).map_err(|error| match error {
+        field::FlowError::Cancelled(cancelled) => ReplayError::Cancelled(cancelled),
+        field::FlowError::Stamp { stroke } => stamp_on_points(stroke).into(),
+    })?;
+    Ok(PointReplay { points, warnings })
+}
+
+fn stamp_on_points(index: usize) -> RecipeError {
+    let text = "is a stamp, which presses into a surface, and points have none; give a mesh, or remove this stroke";
+    RecipeError::new(&format!("stroke.{index}"), RecipeProblem::Other(text.to_owned()))
 }
 
 /// Why a recipe could not be carried out.
@@ -97,6 +109,14 @@ pub enum ReplayError {
         /// Why not.
         source: field::StrokeError,
     },
+    /// A stamp cannot be pressed into the target.
+    #[error("stroke.{index}: {source}")]
+    Stamp {
+        /// Number of the stroke, from zero.
+        index: usize,
+        /// Why not.
+        source: field::StampError,
+    },
     /// The target cannot be deformed.
     #[error("target: {0}")]
     Deform(#[source] field::DeformError),
@@ -112,7 +132,7 @@ impl ReplayError {
             Self::Recipe(error) => Some(error.key.clone()),
             Self::DistanceField { name, .. } => Some(format!("tools.{name}.shape")),
             Self::Tool { name, .. } => Some(format!("tools.{name}")),
-            Self::Stroke { index, .. } => Some(format!("stroke.{index}")),
+            Self::Stroke { index, .. } | Self::Stamp { index, .. } => Some(format!("stroke.{index}")),
             Self::Deform(_) => Some("target".to_owned()),
             Self::MissingMesh { .. } | Self::Cancelled(_) => None,
         }
@@ -123,6 +143,7 @@ impl From<field::DeformError> for ReplayError {
     fn from(error: field::DeformError) -> Self {
         match error {
             field::DeformError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            field::DeformError::Stamp { stroke, source } => Self::Stamp { index: stroke, source },
             error => Self::Deform(error),
         }
     }

@@ -124,6 +124,12 @@ impl Workshop<'_> {
                 let [origin, axis] = [bend.origin, bend.axis].map(DVec3::from_array);
                 field::Bend::new(origin, axis, bend.degrees_per_unit2.to_radians()).map(field::Stroke::Bend)
             }
+            Stroke::Stamp(stamp) => {
+                let tool = Arc::clone(&tools[stamp.tool.as_str()]);
+                let keys = stamp.keys.iter().map(pose).collect();
+                let step = self.recipe.integrate.step;
+                field::Stamp::new(tool, keys, step, stamp.relief).map(field::Stroke::Stamp)
+            }
         };
         stroke.map_err(|source| ReplayError::Stroke { index, source })
     }
@@ -260,6 +266,7 @@ pub(crate) fn rotation(rotate: [f64; 4]) -> DQuat {
 pub(crate) fn used_tools(recipe: &Recipe) -> BTreeSet<&str> {
     let tools = recipe.strokes.iter().filter_map(|stroke| match stroke {
         Stroke::Move(motion) => Some(motion.tool.as_str()),
+        Stroke::Stamp(stamp) => Some(stamp.tool.as_str()),
         Stroke::Twist(_) | Stroke::Bend(_) => None,
     });
     tools.collect()

@@ -124,8 +124,8 @@ fn errors_name_line_key_and_remedy() {
         ("kind = \"twist\"", "", "line 25: stroke.1.kind: missing; add it"),
         (
             "kind = \"bend\"",
-            "kind = \"stamp\"",
-            "line 32: stroke.2.kind: unknown value `stamp`; known here: move, twist, bend",
+            "kind = \"quux\"",
+            "line 32: stroke.2.kind: unknown value `quux`; known here: move, twist, bend, stamp",
         ),
         ("[integrate]", "[intergrate]", "line 37: intergrate: unknown key; did you mean `integrate`?"),
         ("scale = 2.0", "scale = 0", "line 5: target.transform.scale: is 0; give a number above 0"),

@@ -1,7 +1,7 @@
 //! Recipes of any content are written and read back without loss; texts of any content are read without panic.
 
 use isochore_sculpt::recipe::{
-    Bend, Format, Key, Move, Override, Profile, Recipe, Sphere, Stroke, Tool, ToolShape, Twist,
+    Bend, Format, Key, Move, Override, Profile, Recipe, Sphere, Stamp, Stroke, Tool, ToolShape, Twist,
 };
 use proptest::{array::uniform3, collection::vec, prelude::*};
 
@@ -48,6 +48,10 @@ fn stroke() -> impl Strategy<Value = Stroke> {
             axis,
             degrees_per_unit2
         })),
+        ("[a-c]", vec(uniform3(number()), 2..5), proptest::option::of(length())).prop_map(|(tool, places, relief)| {
+            let keys = places.into_iter().map(|at| Key { at, rotate: [0.0, 1.0, 1.0, 0.1] }).collect();
+            Stroke::Stamp(Stamp { tool, keys, relief })
+        }),
     ]
 }
 

@@ -167,3 +167,90 @@ fn work_can_be_cancelled() {
     let result = replay(&recipe(&[]), &meshes(primitives::icosphere(1.0, 3)), &Stop);
     assert!(matches!(result, Err(ReplayError::Cancelled(Cancelled))));
 }
+
+/// A ball that is stamped into a sphere from above, and a twist.
+const STAMPED: &str = r#"
+recipe = 1
+target = { mesh = "target" }
+[tools.ball]
+shape = { kind = "sphere", radius = 0.3 }
+support = 0.3
+[[stroke]]
+kind = "stamp"
+tool = "ball"
+keys = [ { at = [0, 0, 1.5] }, { at = [0, 0, 1.15] } ]
+relief = 0.04
+[[stroke]]
+kind = "twist"
+origin = [0, 0, 0]
+axis = [0, 0, 1]
+degrees_per_unit = 20
+[refine]
+volume = 1e-5
+[volume]
+lock = false
+"#;
+
+fn stamped(settings: &[&str]) -> Recipe {
+    let overrides: Vec<Override> = settings.iter().map(|text| Override::parse(text).unwrap()).collect();
+    Recipe::parse(STAMPED, Format::Toml, &overrides).unwrap()
+}
+
+#[test]
+fn a_stamp_keeps_the_volume_and_is_reported() {
+    let recipe = stamped(&[]);
+    let replay = replay(&recipe, &meshes(primitives::icosphere(1.0, 4)), &Silent).unwrap();
+    let source = Source { text: b"", overrides: &[] };
+    let report = Report::new(&recipe, source, &replay, &replay.deformed.mesh, &Silent).unwrap();
+    let stamp = &report.strokes[0];
+    assert_eq!(stamp.kind, "stamp");
+    assert!(stamp.moved > 100 && stamp.inserted > 100 && stamp.evaluations > 1000);
+    assert!(stamp.volume_change.unwrap().abs() <= 1e-14);
+    assert_eq!(report.warnings, [""; 0]);
+}
+
+#[test]
+fn frames_of_a_stamp_go_down_into_the_surface() {
+    let replay = replay(&stamped(&[]), &meshes(primitives::icosphere(1.0, 4)), &Silent).unwrap();
+    let frames: Vec<TriMesh> = (0..9).map(|index| replay.frame(index, 9, &Silent).unwrap()).collect();
+    assert_eq!(frames[0].positions, replay.deformed.rest.positions);
+    // The pole lies under the ball; nothing of the twist moves it.
+    let heights: Vec<f64> = frames.iter().map(|frame| frame.positions[pole(&replay.deformed.rest)].z).collect();
+    assert!(heights.windows(2).all(|pair| pair[1] <= pair[0]), "{heights:?}");
+    assert!((heights[4] - 0.85).abs() < 0.01 && (heights[0] - 1.0).abs() < 0.01, "{heights:?}");
+    for frame in &frames {
+        assert_eq!(frame.triangles, replay.deformed.mesh.triangles);
+        // The facets of the twist alone.
+        assert!((frame.volume() / frames[0].volume() - 1.0).abs() < 1e-4);
+    }
+}
+
+fn pole(mesh: &TriMesh) -> usize {
+    let positions = &mesh.positions;
+    (0..positions.len()).max_by(|&a, &b| positions[a].z.total_cmp(&positions[b].z)).unwrap()
+}
+
+#[test]
+fn a_stamp_needs_a_volume() {
+    let error = replay_points(&stamped(&[]), &Meshes::new(), &[DVec3::ZERO], &Silent).unwrap_err();
+    assert_eq!(error.key().as_deref(), Some("stroke.0"));
+    assert!(error.to_string().contains("points have none"), "{error}");
+
+    let mut open = primitives::icosphere(1.0, 3);
+    open.triangles.pop();
+    let error = replay(&stamped(&[]), &meshes(open), &Silent).unwrap_err();
+    assert_eq!(error.key().as_deref(), Some("stroke.0"));
+    assert!(error.to_string().contains("open mesh"), "{error}");
+}
+
+#[test]
+fn a_stamp_is_validated() {
+    for (setting, key) in [
+        ("stroke.0.tool='bal'", "stroke.0.tool"),
+        ("stroke.0.relief=0", "stroke.0.relief"),
+        ("stroke.0.keys=[]", "stroke.0.keys"),
+    ] {
+        let error = Recipe::parse(STAMPED, Format::Toml, &[Override::parse(setting).unwrap()]).unwrap_err();
+        assert_eq!(error.key, key);
+    }
+}

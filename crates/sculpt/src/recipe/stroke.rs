@@ -15,9 +15,11 @@ pub enum Stroke {
     Twist(Twist),
     /// A swirl of all space about an axis that grows with the squared distance from a point.
     Bend(Bend),
+    /// A tool presses its relief into the surface, and what it displaces is raised around it.
+    Stamp(Stamp),
 }
 
-tagged!(Stroke { "move" => Move(Move), "twist" => Twist(Twist), "bend" => Bend(Bend) });
+tagged!(Stroke { "move" => Move(Move), "twist" => Twist(Twist), "bend" => Bend(Bend), "stamp" => Stamp(Stamp) });
 
 impl Stroke {
     /// The name that recipes and reports use for this kind of stroke.
@@ -26,6 +28,7 @@ impl Stroke {
             Self::Move(_) => "move",
             Self::Twist(_) => "twist",
             Self::Bend(_) => "bend",
+            Self::Stamp(_) => "stamp",
         }
     }
 }
@@ -73,4 +76,19 @@ pub struct Bend {
     pub axis: [f64; 3],
     /// Angle for each squared unit of distance from the origin, right-handed.
     pub degrees_per_unit2: f64,
+}
+
+/// See [`Stroke::Stamp`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stamp {
+    /// Name of the tool, one of the recipe's `tools`. What it displaces is raised within its support; its profile plays no part.
+    pub tool: String,
+    /// Poses that the tool goes through, at least two, the first outside the target; between neighbors it moves along a screw.
+    pub keys: Vec<Key>,
+    /// Longest edge where the tool touches, model units: an eighth of the relief's wavelength shows it well. Without it, a cell of
+    /// the tool's distance grid, or an eighth of the shortest extent of a shape.
+    #[serde(default, skip_serializing_if = "super::is_default")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub relief: Option<f64>,
 }

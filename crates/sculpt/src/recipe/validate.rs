@@ -55,12 +55,7 @@ impl Recipe {
     fn stroke(&self, stroke: &Stroke) -> Check {
         match stroke {
             Stroke::Move(motion) => {
-                if !self.tools.contains_key(&motion.tool) {
-                    let known = self.tools.keys();
-                    let nearest = nearest(&motion.tool, known.clone().map(String::as_str));
-                    let name = motion.tool.clone();
-                    return fail("tool", RecipeProblem::UnknownTool { name, nearest, known: known.cloned().collect() });
-                }
+                self.tool(&motion.tool)?;
                 keys(&motion.keys)
             }
             Stroke::Twist(twist) => {
@@ -73,7 +68,23 @@ impl Recipe {
                 direction("axis", &bend.axis)?;
                 finite("degrees_per_unit2", bend.degrees_per_unit2)
             }
+            Stroke::Stamp(stamp) => {
+                self.tool(&stamp.tool)?;
+                keys(&stamp.keys)?;
+                stamp.relief.map_or(Ok(()), |length| positive("relief", length))
+            }
         }
+    }
+
+    /// Whether the stroke's tool is one of the recipe's.
+    fn tool(&self, name: &str) -> Check {
+        if self.tools.contains_key(name) {
+            return Ok(());
+        }
+        let known = self.tools.keys();
+        let nearest = nearest(name, known.clone().map(String::as_str));
+        let problem = RecipeProblem::UnknownTool { name: name.to_owned(), nearest, known: known.cloned().collect() };
+        fail("tool", problem)
     }
 }
 
