@@ -28,6 +28,7 @@ mod rigid_field;
 mod ring;
 mod rk4;
 mod scalar_block;
+mod strip;
 mod stroke;
 mod tessellation;
 mod tool;
@@ -44,6 +45,7 @@ pub use refine::RefineOptions;
 pub use rigid_field::{RigidField, VelocityBlock};
 pub use ring::{Ring, RingError, RingShape};
 pub use scalar_block::ScalarBlock;
+pub use strip::{Strip, StripError, StripMotion, StripShape, StripSpine};
 pub use stroke::{Bend, FieldStroke, Move, Stamp, Stroke, StrokeError, Twist};
 pub use tool::{Tool, ToolError};
 

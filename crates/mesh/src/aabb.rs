@@ -35,6 +35,11 @@ impl Aabb {
         Self { min: self.min - margin, max: self.max + margin }
     }
 
+    /// This box moved by `shift`.
+    pub fn translated(self, shift: DVec3) -> Self {
+        Self { min: self.min + shift, max: self.max + shift }
+    }
+
     /// Edge lengths of the box.
     pub fn size(self) -> DVec3 {
         self.max - self.min
