@@ -1,13 +1,18 @@
-//! What the example programs share: swept bodies, a color scale, and files for a figure.
+//! What the example programs share: scenes of recipes, swept bodies, a color scale, and files for a figure.
 
 #![expect(clippy::print_stdout, reason = "examples tell where their files are")]
 
-use std::{error::Error, fs, path::PathBuf};
+use std::{
+    error::Error,
+    fs,
+    path::{Path, PathBuf},
+};
 
 use glam::{DVec2, DVec3};
 use isochore_curve::{Frame, rotate_minimally, sweep, sweep_varying};
-use isochore_mesh::{GridMesh, TriMesh, io};
+use isochore_mesh::{GridMesh, Silent, TriMesh, io};
 use isochore_picture::{Camera, Options, Panel, render};
+use isochore_sculpt::{Meshes, Recipe, Scene, recipe::Format};
 
 /// Points of a spine with their frames.
 pub type Stations = Vec<(DVec3, Frame)>;
@@ -23,14 +28,45 @@ pub fn save_figure(
     camera: &Camera,
     options: &Options,
 ) -> Result<(), Box<dyn Error>> {
+    let mesh_path = folder()?.join(name).with_extension("glb");
+    io::write(&mesh_path, mesh)?;
+    println!("{}", mesh_path.display());
+    save_picture(name, panels, camera, options)
+}
+
+/// Writes `NAME.png` into the same folder.
+///
+/// # Errors
+/// Where the picture cannot be drawn or the file cannot be written.
+pub fn save_picture(name: &str, panels: &[Panel], camera: &Camera, options: &Options) -> Result<(), Box<dyn Error>> {
+    let path = folder()?.join(name).with_extension("png");
+    fs::write(&path, render(panels, camera, options)?.to_png())?;
+    println!("{}", path.display());
+    Ok(())
+}
+
+/// The folder for figures, which is the program's argument, made where it does not exist.
+///
+/// # Errors
+/// Where it cannot be made.
+pub fn folder() -> Result<PathBuf, Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args_os().nth(1).unwrap_or_else(|| "gallery".into()));
     fs::create_dir_all(&folder)?;
-    let mesh_path = folder.join(name).with_extension("glb");
-    io::write(&mesh_path, mesh)?;
-    let picture_path = folder.join(name).with_extension("png");
-    fs::write(&picture_path, render(panels, camera, options)?.to_png())?;
-    println!("{} and {}", picture_path.display(), mesh_path.display());
-    Ok(())
+    Ok(folder)
+}
+
+/// What the recipe `NAME.toml` of the folder `data/recipes` describes.
+///
+/// # Errors
+/// Where a file cannot be read or the recipe cannot be followed.
+pub fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
+    let recipes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/recipes");
+    let recipe = Recipe::parse(&fs::read_to_string(recipes.join(name).with_extension("toml"))?, Format::Toml, &[])?;
+    let mut meshes = Meshes::new();
+    for name in recipe.mesh_names() {
+        meshes.insert(name.to_owned(), io::read(recipes.join(name))?);
+    }
+    Ok(Scene::build(&recipe, &meshes, &Silent)?)
 }
 
 /// The body that a closed `profile`, counter-clockwise, sweeps along `stations`: capped, or closed where `closes` says

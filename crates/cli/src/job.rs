@@ -10,6 +10,7 @@ use isochore_mesh::{
     SelfIntersectionError, TriMesh,
     io::{self, Format as MeshFormat, WriteError},
 };
+use isochore_picture::Camera;
 use isochore_sculpt::{
     Meshes, Recipe, Replay, ReplayError, Report, Source,
     recipe::{Format, Override},
@@ -94,7 +95,9 @@ impl Job {
             written = Some(format.stored(&replay.deformed.mesh));
         }
         if let Some(draft) = &drafts.preview {
-            let picture = preview::before_and_after(&replay.scene.target, &replay.deformed.mesh)
+            let camera =
+                self.recipe.output.view.map_or_else(Camera::default, |view| Camera::from_direction(view.into()));
+            let picture = preview::before_and_after(&replay.scene.target, &replay.deformed.mesh, &camera)
                 .map_err(|error| CommandError::file(staging.target_of(draft), error))?;
             staging.write(draft, &picture)?;
         }

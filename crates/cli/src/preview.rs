@@ -1,14 +1,24 @@
 //! The picture of a mesh before and after.
 
+use glam::DVec3;
 use isochore_mesh::TriMesh;
-use isochore_picture::{Body, Camera, Options, Panel, PictureError, render};
+use isochore_picture::{Body, Camera, Options, Paint, Panel, PictureError, render};
 
 /// Samples a pixel in each direction: one more costs more than most deformations, one fewer leaves jagged outlines.
 const SAMPLES: usize = 2;
 
-/// Both meshes side by side, seen by the same camera, as PNG.
-pub(crate) fn before_and_after(before: &TriMesh, after: &TriMesh) -> Result<Vec<u8>, PictureError> {
-    let panels = [("before", before), ("after", after)].map(|(name, mesh)| Panel::new(name).with(Body::new(mesh)));
+/// Both meshes side by side, seen by the same camera, as PNG. Vertex colors are shown where there are any.
+pub(crate) fn before_and_after(before: &TriMesh, after: &TriMesh, camera: &Camera) -> Result<Vec<u8>, PictureError> {
+    let [colors_before, colors_after] = [before, after].map(colors);
+    let panels = [("before", before, &colors_before), ("after", after, &colors_after)].map(|(name, mesh, colors)| {
+        let body = Body::new(mesh);
+        let is_painted = !colors.is_empty();
+        Panel::new(name).with(if is_painted { body.with_paint(Paint::Vertices(colors)) } else { body })
+    });
     let options = Options { samples: SAMPLES, ..Options::default() };
-    Ok(render(&panels, &Camera::default(), &options)?.to_png())
+    Ok(render(&panels, camera, &options)?.to_png())
+}
+
+fn colors(mesh: &TriMesh) -> Vec<DVec3> {
+    mesh.vertex.colors.iter().map(|color| color.truncate()).collect()
 }

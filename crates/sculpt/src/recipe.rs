@@ -207,6 +207,9 @@ pub struct Output {
     /// A picture of the target before and after, PNG.
     #[serde(skip_serializing_if = "is_default")]
     pub preview: Option<String>,
+    /// Direction from the target to the eye of the preview, of any length; z is up. By default from the right, in front and above.
+    #[serde(skip_serializing_if = "is_default")]
+    pub view: Option<[f64; 3]>,
     /// The deformation as a sequence of meshes.
     #[serde(skip_serializing_if = "is_default")]
     pub frames: Option<Frames>,

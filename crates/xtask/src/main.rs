@@ -24,7 +24,7 @@ const TASKS: [Task; 4] = [
         oracle::run_judges,
     ),
     ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
-    ("gallery", "run all examples and leave their figures in target/gallery", gallery::draw_all),
+    ("gallery", "run all recipes and examples of the figures, and show them in gallery/gallery.md", gallery::draw_all),
 ];
 
 fn main() -> ExitCode {

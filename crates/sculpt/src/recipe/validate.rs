@@ -49,6 +49,7 @@ impl Recipe {
         self.refine.max_edge.map_or(Ok(()), |length| positive("refine.max_edge", length))?;
         at_least("refine.max_triangles", self.refine.max_triangles as u64, 1)?;
         self.promise.volume.map_or(Ok(()), |change| not_negative("promise.volume", change))?;
+        self.output.view.map_or(Ok(()), |view| direction("output.view", &view))?;
         self.output.frames.as_ref().map_or(Ok(()), |frames| at_least("output.frames.count", frames.count.into(), 2))
     }
 

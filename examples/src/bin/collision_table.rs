@@ -1,0 +1,61 @@
+#![expect(clippy::print_stdout, reason = "examples tell where their files are")]
+
+//! Six cases like those of table 13.1 of Zheng's thesis, whose models and paths are not published: change of volume without
+//! lock, as given and refined, and frames per second on one core, beside the printed figures. Writes `collision_table.md`.
+
+use std::{error::Error, fmt::Write, fs};
+
+use isochore_examples::{folder, scene};
+use isochore_field::{DeformOptions, Stroke, deform};
+use isochore_mesh::Silent;
+
+/// Recipe, then the thesis' model, triangles, volumes before and after, and frames per second.
+const CASES: [(&str, &str, usize, f64, f64, f64); 6] = [
+    ("sphere", "sphere (C)", 11_200, 2.132, 2.127, 78.0),
+    ("hare", "bunny (C)", 23_380, 1.997, 1.988, 36.0),
+    ("chess", "chess (C)", 23_844, 0.576, 0.572, 36.0),
+    ("rocker_arm", "rocker arm (C)", 43_468, 0.143, 0.142, 30.0),
+    ("rod", "cube (R)", 33_600, 8.000, 8.033, 39.0),
+    ("waist", "Venus (R)", 36_396, 74.811, 74.324, 37.0),
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut table = String::from(
+        "| recipe | triangles | change | refined to | change | frames/s | thesis | triangles | change | frames/s |\n\
+         |---|---:|---:|---:|---:|---:|---|---:|---:|---:|\n",
+    );
+    // One core, as the thesis had.
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    for (recipe, model, triangles, before, after, frames) in CASES {
+        let scene = scene(recipe)?;
+        let run = |options: DeformOptions| one.install(|| deform(&scene.target, &scene.strokes, &options, &Silent));
+        let plain = run(DeformOptions { refine: None, lock: false })?;
+        let refined = run(DeformOptions { lock: false, ..scene.options })?;
+        let volume = scene.target.volume();
+        let change = |deformed: f64| deformed / volume - 1.0;
+        let steps: usize = scene.strokes.iter().map(steps).sum();
+        writeln!(
+            table,
+            "| `{recipe}` | {} | {:+.3} % | {} | {:+.4} % | {:.0} | {model} | {triangles} | {:+.3} % | {frames} |",
+            scene.target.triangles.len(),
+            100.0 * change(plain.mesh.volume()),
+            refined.mesh.triangles.len(),
+            100.0 * change(refined.mesh.volume()),
+            steps as f64 / plain.receipt.seconds.advect,
+            100.0 * (after / before - 1.0),
+        )?;
+    }
+    let path = folder()?.join("collision_table.md");
+    fs::write(&path, &table)?;
+    println!("{}", path.display());
+    Ok(())
+}
+
+/// A frame is a step of the integrator; the exact flow of a twist is one.
+fn steps(stroke: &Stroke) -> usize {
+    match stroke {
+        Stroke::Move(stroke) => stroke.steps(),
+        Stroke::Field(stroke) => stroke.steps(),
+        Stroke::Twist(_) | Stroke::Bend(_) => 1,
+    }
+}
