@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use glam::DVec3;
 use isochore_mesh::{Aabb, LANES, PointBlock};
 
-use crate::{Pose, ScalarBlock};
+use crate::{Pose, RigidGauge, ScalarBlock};
 
 /// A divergence-free velocity field at one instant, in world coordinates: the curl of a vector potential.
 ///
@@ -20,6 +20,11 @@ pub trait Field: Debug + Send + Sync {
     /// World from body for one of the rigid bodies that [`FieldBlock::core`] names.
     fn core_pose(&self, _core: u32) -> Pose {
         Pose::IDENTITY
+    }
+
+    /// The gauge of the potential where the field is that of one rigid body.
+    fn gauge(&self) -> Option<RigidGauge> {
+        None
     }
 
     /// The velocity at one point.
@@ -46,6 +51,11 @@ pub trait MovingField: Debug + Send + Sync {
 
     /// Length over which the field changes.
     fn feature_size(&self) -> f64;
+
+    /// Length over which the field changes in a ball: surface coarser than this can miss it there. Infinite where it cannot.
+    fn feature_size_near(&self, _center: DVec3, _radius: f64) -> f64 {
+        self.feature_size()
+    }
 }
 
 /// A field at the points of a block.

@@ -5,10 +5,12 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use isochore_mesh::{Aabb, DistanceBlock, LANES, PointBlock};
 
-use crate::{BodyTwist, Field, FieldBlock, MovingField, Pose, Tool, pose::Placement, rigid_field::RigidMotion};
+use crate::{
+    BodyTwist, Field, FieldBlock, MovingField, Pose, RigidGauge, Tool, pose::Placement, rigid_field::RigidMotion,
+};
 
 /// A tool on its way along one screw, from time 0 to 1.
 #[derive(Debug, Clone)]
@@ -98,5 +100,23 @@ impl Field for PlacedTool {
 
     fn core_pose(&self, _core: u32) -> Pose {
         self.pose
+    }
+
+    fn gauge(&self) -> Option<RigidGauge> {
+        let to_world = |vector: DVec3| self.placement.turn_to_world(vector);
+        let bounds = self.tool.support_bounds();
+        let half = 0.5 * bounds.size();
+        Some(RigidGauge {
+            center: self.pose.transform(self.motion.center),
+            linear: to_world(self.motion.linear),
+            angular: to_world(self.motion.angular),
+            middle: self.pose.transform(bounds.center()),
+            half_axes: DMat3::from_cols(
+                to_world(half.x * DVec3::X),
+                to_world(half.y * DVec3::Y),
+                to_world(half.z * DVec3::Z),
+            ),
+            support: self.tool.support(),
+        })
     }
 }

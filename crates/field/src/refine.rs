@@ -141,17 +141,14 @@ pub(crate) fn resolve_field(
     criteria: &Criteria,
     monitor: &dyn Monitor,
 ) -> Result<Refinement, Cancelled> {
-    let coarse = stroke.feature_size();
-    if coarse == f64::INFINITY {
-        return Ok(Refinement::default());
-    }
     split_long_edges(mesh, past, criteria, monitor, |mesh| {
         let longest_allowed = |index| {
             let corners = mesh.image_of(index);
             let longest = edge_lengths(&corners).into_iter().fold(0.0, f64::max);
             let center = (corners[0] + corners[1] + corners[2]) / 3.0;
             let radius = corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max);
-            if longest > coarse && stroke.may_touch(center, radius) { coarse } else { f64::INFINITY }
+            let allowed = stroke.feature_size_near(center, radius);
+            if longest > allowed && stroke.may_touch(center, radius) { allowed } else { f64::INFINITY }
         };
         (0..mesh.triangles.len()).into_par_iter().map(longest_allowed).collect()
     })

@@ -7,13 +7,18 @@ mod rotation;
 mod stamp;
 mod twist;
 
+use std::sync::Arc;
+
 use glam::DVec3;
+use isochore_mesh::Aabb;
 
 pub use bend::Bend;
 pub use field_stroke::FieldStroke;
 pub use movement::Move;
 pub use stamp::Stamp;
 pub use twist::Twist;
+
+use crate::{Mask, swirl_field::SwirlField};
 
 /// One motion that deforms what it passes through.
 #[derive(Debug, Clone)]
@@ -55,13 +60,40 @@ impl Stroke {
         }
     }
 
-    /// Length over which the field changes where it has one: surface coarser than this can miss it.
-    pub(crate) fn feature_size(&self) -> f64 {
+    /// Length over which the field changes in a ball where it has one: surface coarser than this can miss it there.
+    pub(crate) fn feature_size_near(&self, center: DVec3, radius: f64) -> f64 {
         match self {
             Self::Move(stroke) => stroke.tool().feature_size(),
-            Self::Field(stroke) => stroke.feature_size(),
+            Self::Field(stroke) => stroke.feature_size_near(center, radius),
             Self::Twist(_) | Self::Bend(_) | Self::Stamp(_) => f64::INFINITY,
         }
+    }
+
+    /// The stroke with the fields held back by `mask`; integrated in steps where it had an exact flow.
+    ///
+    /// `bounds` is the box of what is to be carried. `step` is the travel in one step for twists and bends; the other strokes
+    /// have their own.
+    ///
+    /// # Errors
+    /// [`StrokeError`]: a way of too many steps, a motion that its own mirror image takes back, a stamp.
+    pub fn masked(&self, mask: &Arc<Mask>, bounds: Aabb, step: f64) -> Result<Self, StrokeError> {
+        if mask.is_empty() {
+            return Ok(self.clone());
+        }
+        let swirl = |field: SwirlField| {
+            if field.is_undone_by(mask.mirrors()) {
+                return Err(StrokeError::UndoneByMirror);
+            }
+            FieldStroke::new(vec![Arc::new(field)], step)
+        };
+        let fields = match self {
+            Self::Move(stroke) => FieldStroke::new(stroke.fields(), stroke.step())?,
+            Self::Field(stroke) => stroke.clone(),
+            Self::Twist(stroke) => swirl(stroke.field(bounds))?,
+            Self::Bend(stroke) => swirl(stroke.field(bounds))?,
+            Self::Stamp(_) => return Err(StrokeError::StampMasked),
+        };
+        Ok(Self::Field(fields.masked(mask, bounds)?))
     }
 
     /// The first part of the stroke, `fraction` of its time, from 0 to 1.
@@ -106,6 +138,14 @@ pub enum StrokeError {
     /// The axis has no direction.
     #[error("the axis must have a length")]
     ZeroAxis,
+    /// A twist or a bend whose mirror image turns the other way.
+    #[error(
+        "the mirror image of the motion undoes it; only an axis across the plane goes with a bend, and none with a twist"
+    )]
+    UndoneByMirror,
+    /// A stamp is no flow that a mask could hold back.
+    #[error("a stamp has no field that a mask could hold back; leave out the mask, or move the tool instead")]
+    StampMasked,
     /// A number is infinite or not a number.
     #[error("{0} must be finite")]
     NotFinite(&'static str),

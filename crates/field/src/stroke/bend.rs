@@ -4,8 +4,10 @@
 //! distance from the origin, so its angular velocity never changes and the flow is a rotation.
 
 use glam::DVec3;
+use isochore_mesh::Aabb;
 
 use super::{StrokeError, rotation::Axis};
+use crate::swirl_field::{SwirlField, SwirlLaw};
 
 /// Spheres about an origin turn about an axis, by an angle proportional to their squared radius: a swirl, which bends a bar
 /// across the axis into an arm of a spiral.
@@ -34,6 +36,12 @@ impl Bend {
             *point = self.axis.rotated(*point, self.radians_per_unit2 * square);
         }
         points.len() as u64
+    }
+
+    /// The field whose flow this is, for what lies in a box.
+    pub(super) fn field(&self, bounds: Aabb) -> SwirlField {
+        let Axis { origin, direction } = self.axis;
+        SwirlField { origin, direction, law: SwirlLaw::SquaredDistance, rate: self.radians_per_unit2, bounds }
     }
 
     pub(super) fn truncated(&self, fraction: f64) -> Self {

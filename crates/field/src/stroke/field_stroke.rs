@@ -7,12 +7,14 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use isochore_mesh::{LANES, PointBlock};
+use isochore_mesh::{Aabb, LANES, PointBlock};
 
 use super::{StrokeError, movement::MAX_STEPS};
 use crate::{
-    Field, MovingField,
+    Field, Mask, MovingField,
     field::{FieldBlock, NO_CORE},
+    masked_field::MaskedField,
+    mirrored_field::MirroredField,
     pose::Placement,
     rk4::rk4_step,
 };
@@ -83,9 +85,24 @@ impl FieldStroke {
         self.step
     }
 
-    /// Length over which the fields change.
-    pub(super) fn feature_size(&self) -> f64 {
-        self.fields().map(|field| field.feature_size()).fold(f64::INFINITY, f64::min)
+    /// Length over which the fields change in a ball.
+    pub(super) fn feature_size_near(&self, center: DVec3, radius: f64) -> f64 {
+        self.fields().map(|field| field.feature_size_near(center, radius)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same fields, held back by a mask.
+    pub(super) fn masked(&self, mask: &Arc<Mask>, bounds: Aabb) -> Result<Self, StrokeError> {
+        let masked = |span: &Span| {
+            let mut field = Arc::clone(&span.field);
+            if !mask.mirrors().is_empty() {
+                field = Arc::new(MirroredField::new(field, mask.mirrors()));
+            }
+            if mask.holds() {
+                field = Arc::new(MaskedField::new(field, Arc::clone(mask), bounds));
+            }
+            Span { field, end: span.end }
+        };
+        Self::from_spans(self.spans.iter().map(masked).collect(), self.step)
     }
 
     pub(super) fn advance(&self, points: &mut [DVec3]) -> u64 {
@@ -184,6 +201,8 @@ impl Leg {
             let point = &mut points[index as usize];
             if is_still[lane] {
                 wake[index as usize] = step + sleep[lane].max(1);
+            } else if arrived.get(lane) == start.get(lane) {
+                // What is held, or carried by a body that pauses: not even the sign of a zero changes.
             } else if core[lane] == NO_CORE {
                 *point = arrived.get(lane);
             } else {

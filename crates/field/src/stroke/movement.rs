@@ -72,6 +72,11 @@ impl Move {
         &self.tool
     }
 
+    /// The travel in one step, as a fraction of the feature size.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
     /// Steps of the integrator along the whole way.
     pub fn steps(&self) -> usize {
         self.segments.iter().map(Segment::steps).sum()

@@ -4,8 +4,10 @@
 //! height along the axis, so its angular velocity never changes and the flow is a rotation.
 
 use glam::DVec3;
+use isochore_mesh::Aabb;
 
 use super::{StrokeError, rotation::Axis};
+use crate::swirl_field::{SwirlField, SwirlLaw};
 
 /// Planes across an axis turn about it, by an angle proportional to their height along it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +35,12 @@ impl Twist {
             *point = self.axis.rotated(*point, self.radians_per_unit * height);
         }
         points.len() as u64
+    }
+
+    /// The field whose flow this is, for what lies in a box.
+    pub(super) fn field(&self, bounds: Aabb) -> SwirlField {
+        let Axis { origin, direction } = self.axis;
+        SwirlField { origin, direction, law: SwirlLaw::Height, rate: self.radians_per_unit, bounds }
     }
 
     pub(super) fn truncated(&self, fraction: f64) -> Self {
