@@ -1,8 +1,11 @@
 //! The signed distance of a mesh, sampled on a grid and interpolated by a cubic spline.
 
+mod exact_distance;
+mod flat_triangle;
 mod grid;
 mod interpolant;
 mod lipschitz;
+mod oriented_box;
 mod packet;
 mod sampling;
 mod signs;

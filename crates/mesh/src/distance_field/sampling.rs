@@ -2,12 +2,12 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use glam::DVec3;
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::Grid;
+use super::exact_distance::{Points, exact_squared_distances};
 use super::packet::{LANES, PACKET, Packet, PacketSearch};
-use crate::bvh::closest_on_triangle;
 use crate::{Aabb, Bvh, Cancelled, Monitor};
 
 /// Distances without sign, and a bound on their error, both in model units.
@@ -15,7 +15,8 @@ use crate::{Aabb, Bvh, Cancelled, Monitor};
 /// Triangles are chosen in `f32` and measured in `f64`, so that an error can only come from a choice between triangles that are
 /// nearly equally near, and from rounding the result.
 pub(super) fn unsigned(bvh: &Bvh, grid: &Grid, monitor: &dyn Monitor) -> Result<(Vec<f32>, f64), Cancelled> {
-    let search = PacketSearch::new(bvh);
+    let largest = largest_coordinate(bvh, grid);
+    let search = PacketSearch::new(bvh, largest);
     let [nx, ny, nz] = grid.dims;
     let mut samples = vec![0.0; nx * ny * nz];
     let slab = nx * ny * PACKET[2];
@@ -23,61 +24,70 @@ pub(super) fn unsigned(bvh: &Bvh, grid: &Grid, monitor: &dyn Monitor) -> Result<
     let done = AtomicUsize::new(0);
     // A slab knows nothing of other slabs, so that the result does not depend on how threads share them.
     samples.par_chunks_mut(slab).enumerate().try_for_each(|(number, samples)| {
-        sample_slab(&search, bvh, grid, number * PACKET[2], samples, monitor)?;
+        let slab = Slab { search: &search, bvh, grid, layer: number * PACKET[2] };
+        let mut guesses = Vec::new();
+        for strip in 0..ny.div_ceil(PACKET[1]) {
+            if monitor.is_cancelled() {
+                return Err(Cancelled);
+            }
+            sample_strip(&slab, strip, samples, &mut guesses);
+        }
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         monitor.check("distance", done as f64 / slabs as f64)
     })?;
     let farthest = samples.par_iter().copied().reduce(|| 0.0, f32::max);
-    Ok((samples, error_bound(bvh, grid, f64::from(farthest))))
+    Ok((samples, error_bound(bvh, largest, f64::from(farthest))))
 }
 
-/// Fills the layers from `layer` on that `samples` has room for, in strips of packets, back and forth.
-fn sample_slab(
-    search: &PacketSearch<'_>,
-    bvh: &Bvh,
-    grid: &Grid,
+/// Layers of a grid as thick as a packet.
+struct Slab<'a> {
+    search: &'a PacketSearch<'a>,
+    bvh: &'a Bvh,
+    grid: &'a Grid,
+    /// The first of the layers.
     layer: usize,
-    samples: &mut [f32],
-    monitor: &dyn Monitor,
-) -> Result<(), Cancelled> {
+}
+
+/// Fills a strip of packets through the layers that `samples` has room for, every other one backward: so the first packet is
+/// beside the last of the strip before, and the triangles found there, `guesses`, are near.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
+fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], guesses: &mut Vec<u32>) {
+    let Slab { search, bvh, grid, layer } = *slab;
     let [nx, ny, _] = grid.dims;
     let layers = samples.len() / (nx * ny);
     let columns = nx.div_ceil(PACKET[0]);
-    let frame = bvh.frame();
     let mut stack = Vec::with_capacity(bvh.stack_capacity());
-    let mut guesses: Vec<u32> = Vec::new();
-    for strip in 0..ny.div_ceil(PACKET[1]) {
-        if monitor.is_cancelled() {
-            return Err(Cancelled);
-        }
-        for column in 0..columns {
-            let column = if strip % 2 == 0 { column } else { columns - 1 - column };
+    for column in 0..columns {
+        let column = if strip.is_multiple_of(2) { column } else { columns - 1 - column };
+        let mut index = [0; LANES];
+        let mut points = Points::ZERO;
+        for lane in 0..LANES {
             // Lanes that stick out repeat the last node inside.
-            let node = |lane: usize| {
-                [
-                    (column * PACKET[0] + lane % PACKET[0]).min(nx - 1),
-                    (strip * PACKET[1] + lane / PACKET[0] % PACKET[1]).min(ny - 1),
-                    (lane / (PACKET[0] * PACKET[1])).min(layers - 1),
-                ]
-            };
-            let points: [DVec3; LANES] = std::array::from_fn(|lane| {
-                let [i, j, k] = node(lane);
-                frame.inward(grid.node(i, j, layer + k))
-            });
-            let mut packet = Packet::new(points);
-            search.search(&mut packet, &guesses, &mut stack);
-            for (lane, &point) in points.iter().enumerate() {
-                let [i, j, k] = node(lane);
-                let (_, squared) = closest_on_triangle(point, &bvh.corners()[packet.slot[lane] as usize]);
-                samples[(k * ny + j) * nx + i] = (squared.sqrt() / frame.scale()) as f32;
+            let i = (column * PACKET[0] + lane % PACKET[0]).min(nx - 1);
+            let j = (strip * PACKET[1] + lane / PACKET[0] % PACKET[1]).min(ny - 1);
+            let k = (lane / (PACKET[0] * PACKET[1])).min(layers - 1);
+            index[lane] = (k * ny + j) * nx + i;
+            points.set(lane, bvh.frame().inward(grid.node(i, j, layer + k)));
+        }
+        let mut packet = Packet {
+            x: points.x.map(|x| x as f32),
+            y: points.y.map(|y| y as f32),
+            z: points.z.map(|z| z as f32),
+            squared: [f32::INFINITY; LANES],
+            slot: [0; LANES],
+        };
+        search.search(&mut packet, guesses, &mut stack);
+        let squared = exact_squared_distances(&points, bvh.corners(), &packet.slot);
+        for lane in 0..LANES {
+            samples[index[lane]] = (squared[lane].sqrt() / bvh.frame().scale()) as f32;
+        }
+        guesses.clear();
+        for &slot in &packet.slot {
+            if !guesses.contains(&slot) {
+                guesses.push(slot);
             }
-            guesses.clear();
-            guesses.extend_from_slice(&packet.slot);
-            guesses.sort_unstable();
-            guesses.dedup();
         }
     }
-    Ok(())
 }
 
 /// Half a unit in the last place of `f32`, relative.
@@ -88,19 +98,25 @@ const EPSILON: f64 = f32::EPSILON as f64 / 2.0;
 /// - Rounding the node and the triangle's first corner to `f32` displaces one against the other by at most √3 ε (E + 1).
 /// - Their difference, at most d + L long, is rounded (ε), turned into the triangle's plane by rounded unit vectors (4ε with the
 ///   sum), compared with rounded lengths and directions in the plane (3ε), and squared and summed (2ε as a distance): 10 ε (d + L).
-/// - A box may be left out by comparison with its squared distance, which is wrong by no more than 2ε as a distance.
+/// - A box, which is grown by the rounding of coordinates along its axes, may be left out by comparison with its squared distance,
+///   whose sum and squares are wrong by no more than 2ε as a distance.
 ///
 /// So the distance by which a triangle is chosen is off by δ = ε (√3 (E + 1) + 12 (d + L)), and the chosen triangle is no more than
 /// 2δ farther than the nearest. Its distance is then rounded to `f32`: ε d.
-fn error_bound(bvh: &Bvh, grid: &Grid, farthest: f64) -> f64 {
-    let frame = bvh.frame();
-    let bounds = grid.bounds();
-    let extent = Aabb { min: frame.inward(bounds.min), max: frame.inward(bounds.max) };
-    let largest = extent.min.abs().max(extent.max.abs()).max_element();
+fn error_bound(bvh: &Bvh, largest: f64, farthest: f64) -> f64 {
     let longest_edge2 = (bvh.corners().iter())
         .map(|&[a, b, c]| a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)))
         .fold(0.0, f64::max);
-    let distance = farthest * frame.scale();
+    let scale = bvh.frame().scale();
+    let distance = farthest * scale;
     let choice = EPSILON * (3f64.sqrt() * (largest + 1.0) + 12.0 * (distance + longest_edge2.sqrt()));
-    (2.0 * choice + EPSILON * distance) / frame.scale()
+    (2.0 * choice + EPSILON * distance) / scale
+}
+
+/// The largest coordinate of a node in the unit frame.
+fn largest_coordinate(bvh: &Bvh, grid: &Grid) -> f64 {
+    let frame = bvh.frame();
+    let bounds = grid.bounds();
+    let extent = Aabb { min: frame.inward(bounds.min), max: frame.inward(bounds.max) };
+    extent.min.abs().max(extent.max.abs()).max_element()
 }
