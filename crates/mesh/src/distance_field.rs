@@ -7,6 +7,8 @@ mod interpolant;
 mod lipschitz;
 mod oriented_box;
 mod packet;
+mod patches;
+mod row_crossings;
 mod sampling;
 mod signs;
 mod spline;
@@ -17,10 +19,9 @@ mod tests;
 use std::sync::Arc;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
-use crate::mesh_distance::{surface_bounds, surface_centroid, winding_is_whole};
-use crate::{Aabb, Bvh, BvhError, Cancelled, Distance, DistanceBlock, Monitor, PointBlock, TriMesh, WindingNumber};
+use crate::mesh_distance::{open_edges, surface_bounds, surface_centroid};
+use crate::{Aabb, Bvh, BvhError, Cancelled, Distance, DistanceBlock, Monitor, PointBlock, TriMesh};
 
 pub use grid::Grid;
 use interpolant::Interpolant;
@@ -132,7 +133,7 @@ pub struct DistanceField {
     is_closed: bool,
 }
 
-/// Bytes a node takes while the field is built: sample, coefficient, region, and two copies in `f64` between the filters.
+/// Bytes a node takes while the field is built: sample, coefficient, winding number, and two copies in `f64` between the filters.
 const BYTES_PER_NODE: u64 = 4 + 4 + 4 + 2 * 8;
 
 impl DistanceField {
@@ -152,7 +153,8 @@ impl DistanceField {
         if bytes > options.memory_limit || grid.len() > u32::MAX as usize {
             return Err(DistanceFieldError::Memory { dims: grid.dims, bytes, limit: options.memory_limit });
         }
-        let is_closed = winding_is_whole(&mesh.triangles);
+        let open_edges = open_edges(&mesh.triangles, mesh.positions.len());
+        let is_closed = open_edges.is_empty();
         let volume = mesh.volume();
         if is_closed && volume < 0.0 {
             return Err(DistanceFieldError::InsideOut { volume });
@@ -160,7 +162,7 @@ impl DistanceField {
 
         let (mut samples, sample_error) = sampling::unsigned(&bvh, &grid, monitor)?;
         monitor.check("signs", 0.0)?;
-        sign(&mut samples, sample_error, &bvh, &grid, is_closed, monitor)?;
+        signs::negate_inside(&mut samples, mesh, &open_edges, &bvh, &grid, monitor)?;
         let reach = match options.padding {
             Padding::Reach(reach) => {
                 check_border(&grid, &samples, reach)?;
@@ -171,7 +173,7 @@ impl DistanceField {
         };
         monitor.check("spline", 0.0)?;
         let interpolant = Interpolant::new(&grid, &samples);
-        let centroid = surface_centroid(mesh);
+        let centroid = surface_centroid(mesh, is_closed);
         Ok(Self { grid, samples, sample_error, interpolant, surface, centroid, reach, is_closed })
     }
 
@@ -220,44 +222,6 @@ impl Distance for DistanceField {
 
     fn detail(&self) -> f64 {
         self.grid.cell
-    }
-}
-
-/// Gives the samples their signs.
-fn sign(
-    samples: &mut [f32],
-    sample_error: f64,
-    bvh: &Arc<Bvh>,
-    grid: &Grid,
-    is_closed: bool,
-    monitor: &dyn Monitor,
-) -> Result<(), Cancelled> {
-    let winding_number = WindingNumber::new(bvh.clone());
-    if is_closed {
-        let regions = signs::Regions::new(grid, samples, sample_error);
-        let representatives = regions.representatives(samples);
-        let inside: Vec<bool> = (representatives.par_iter())
-            .map(|&node| {
-                if monitor.is_cancelled() {
-                    Err(Cancelled)
-                } else {
-                    Ok(winding_number.is_inside(grid.node_at(node as usize)))
-                }
-            })
-            .collect::<Result<_, _>>()?;
-        let inside = representatives.into_iter().zip(inside).filter_map(|(node, is_inside)| is_inside.then_some(node));
-        regions.negate(samples, inside);
-        Ok(())
-    } else {
-        samples.par_iter_mut().enumerate().try_for_each(|(index, sample)| {
-            if monitor.is_cancelled() {
-                return Err(Cancelled);
-            }
-            if winding_number.is_inside(grid.node_at(index)) {
-                *sample = -*sample;
-            }
-            Ok(())
-        })
     }
 }
 

@@ -1,9 +1,12 @@
+mod open_edges;
 #[cfg(test)]
 mod tests;
 
 use std::sync::Arc;
 
 use glam::DVec3;
+
+pub(crate) use open_edges::open_edges;
 
 use crate::bvh::closest_on_triangle;
 use crate::pseudo_normals::PseudoNormals;
@@ -48,7 +51,8 @@ impl MeshDistance {
         } else {
             Sides::WindingNumber(WindingNumber::new(bvh.clone()))
         };
-        Ok(Self { bounds: surface_bounds(mesh), centroid: surface_centroid(mesh), bvh, sides })
+        let is_closed = open_edges(&mesh.triangles, mesh.positions.len()).is_empty();
+        Ok(Self { bounds: surface_bounds(mesh), centroid: surface_centroid(mesh, is_closed), bvh, sides })
     }
 
     /// The nearest point of the mesh.
@@ -129,10 +133,10 @@ pub(crate) fn surface_bounds(mesh: &TriMesh) -> Aabb {
 }
 
 /// Centroid of the volume inside a closed mesh; of the area, if it is open or encloses nothing.
-pub(crate) fn surface_centroid(mesh: &TriMesh) -> DVec3 {
+pub(crate) fn surface_centroid(mesh: &TriMesh, is_closed: bool) -> DVec3 {
     let bounds = surface_bounds(mesh);
     let size = bounds.size().max_element();
-    if winding_is_whole(&mesh.triangles) && mesh.volume().abs() > LEAST_VOLUME * size * size * size {
+    if is_closed && mesh.volume().abs() > LEAST_VOLUME * size * size * size {
         return mesh.volume_centroid();
     }
     // About the center, so that nothing cancels far from the origin.
@@ -148,17 +152,3 @@ pub(crate) fn surface_centroid(mesh: &TriMesh) -> DVec3 {
 /// Share of the bounding cube below which a volume has no centroid worth the name. Larger: thin sheets would get the centroid of
 /// their area. Smaller: rounding could put the centroid anywhere.
 const LEAST_VOLUME: f64 = 1e-9;
-
-/// Whether no edge is left over when opposite directions cancel. Then winding numbers are whole off the surface.
-pub(crate) fn winding_is_whole(triangles: &[[u32; 3]]) -> bool {
-    let mut edges: Vec<(u32, u32, bool)> = (triangles.iter())
-        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
-        .filter(|(from, to)| from != to)
-        .map(|(from, to)| (from.min(to), from.max(to), from < to))
-        .collect();
-    edges.sort_unstable();
-    edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|uses| {
-        let forward = uses.iter().filter(|edge| edge.2).count();
-        2 * forward == uses.len()
-    })
-}

@@ -73,8 +73,44 @@ impl WindingNumber {
 
     /// Whether the winding number exceeds one half.
     pub fn is_inside(&self, point: DVec3) -> bool {
+        self.exceeds(point, 0.5)
+    }
+
+    /// Whether the winding number exceeds `threshold`.
+    pub(crate) fn exceeds(&self, point: DVec3, threshold: f64) -> bool {
         let point = self.bvh.frame().inward(point);
-        self.refine(point, |number, error| (number - 0.5).abs() > error) > 0.5
+        self.refine(point, |number, error| (number - threshold).abs() > error) > threshold
+    }
+
+    /// Whether the winding number is surely below one half either way, at all points within `reach` of `center`.
+    ///
+    /// However a triangle lies, it covers no more of the sphere than its area over its squared distance.
+    pub(crate) fn is_below_half(&self, center: DVec3, reach: f64) -> bool {
+        let (center, reach) = (self.bvh.frame().inward(center), reach * self.bvh.frame().scale());
+        let mut angle = 0.0;
+        let mut stack = Vec::with_capacity(self.bvh.stack_capacity());
+        stack.push(0);
+        while let Some(index) = stack.pop() {
+            let (node, cluster) = (&self.bvh.nodes()[index as usize], &self.clusters[index as usize]);
+            let gap = (cluster.center - center).length() - cluster.radius - reach;
+            if gap > cluster.radius || (node.count > 0 && gap > 0.0) {
+                angle += cluster.area / (gap * gap);
+            } else if node.count == 0 {
+                stack.extend([node.first, node.first + 1]);
+            } else {
+                return false;
+            }
+            // Half of the sphere, and a little less for rounding.
+            if angle > 1.999 * PI {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// The hierarchy of the triangles.
+    pub(crate) fn bvh(&self) -> &Bvh {
+        &self.bvh
     }
 
     /// [`is_inside`](Self::is_inside) for many points, in parallel.

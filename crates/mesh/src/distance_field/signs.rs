@@ -1,93 +1,101 @@
 //! Which nodes of a grid lie inside.
 
-use super::Grid;
+#[cfg(test)]
+mod tests;
 
-/// Parts of a grid whose nodes lie on the same side of any closed surface.
+use std::sync::Arc;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::patches::Patches;
+use super::row_crossings::RowCrossings;
+use super::{DistanceFieldError, Grid};
+use crate::{Bvh, Cancelled, Monitor, TriMesh, WindingNumber};
+
+/// Triangles between two looks at the monitor.
+const TRIANGLES_AT_ONCE: usize = 1 << 14;
+
+/// Nodes along each side of a brick, for which one look at the patches from afar may do.
+const BRICK: usize = 4;
+
+/// Distance from a patch, over the longest side of the mesh, within which the patches are not asked. Larger: slower. Smaller than
+/// rounding, 1e-15: which side of a patch a node is on could be judged in two ways.
+const TOO_CLOSE: f64 = 1e-9;
+
+/// Makes the distances of the nodes inside negative: of those with a winding number above one half.
 ///
-/// Two neighbors whose distances to the surface sum to more than what lies between them cannot have the surface between them:
-/// it would meet the straight way at a point whose distances to both sum to exactly that way.
-pub(super) struct Regions {
-    /// Of each node, a node of the same region; the root of a region names itself.
-    parent: Vec<u32>,
-}
+/// `open_edges` are those of the mesh. Without any, counting crossings of rows is all. With some, patches close the mesh for that
+/// count, and their own winding number, which fades with the distance from the holes, is taken off.
+pub(super) fn negate_inside(
+    samples: &mut [f32],
+    mesh: &TriMesh,
+    open_edges: &[[u32; 2]],
+    bvh: &Arc<Bvh>,
+    grid: &Grid,
+    monitor: &dyn Monitor,
+) -> Result<(), DistanceFieldError> {
+    let rows = RowCrossings::new(grid, bvh.frame());
+    let triangles = bvh.corners().par_chunks(TRIANGLES_AT_ONCE).zip(bvh.triangles().par_chunks(TRIANGLES_AT_ONCE));
+    triangles.try_for_each(|(corners, vertices)| {
+        corners.iter().zip(vertices).for_each(|(corners, vertices)| rows.add(corners, vertices));
+        if monitor.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    })?;
+    if open_edges.is_empty() {
+        let numbers = rows.into_winding_numbers();
+        samples.par_iter_mut().zip(numbers).for_each(|(sample, number)| negate_if(sample, number >= 1));
+        return Ok(());
+    }
 
-impl Regions {
-    /// Regions of a grid with unsigned `distances`, each off by `error` at most.
-    pub(super) fn new(grid: &Grid, distances: &[f32], error: f64) -> Self {
-        let [nx, ny, nz] = grid.dims;
-        let apart = (grid.cell + 2.0 * error) * ROUNDING;
-        let mut regions = Self { parent: (0..distances.len() as u32).collect() };
-        for k in 0..nz {
-            for j in 0..ny {
-                let row = (k * ny + j) * nx;
-                for index in row..row + nx {
-                    let distance = f64::from(distances[index]);
-                    let mut join = |neighbor: usize| {
-                        if distance + f64::from(distances[neighbor]) > apart {
-                            regions.join(index as u32, neighbor as u32);
-                        }
-                    };
-                    if index > row {
-                        join(index - 1);
-                    }
-                    if j > 0 {
-                        join(index - nx);
-                    }
-                    if k > 0 {
-                        join(index - nx * ny);
+    let patches = Patches::over(open_edges, &mesh.positions);
+    for (corners, vertices) in patches.positions.iter().zip(&patches.triangles) {
+        rows.add(&corners.map(|corner| bvh.frame().inward(corner)), vertices);
+    }
+    let numbers = rows.into_winding_numbers();
+    let of_patches = patches.winding_number()?;
+    let of_mesh = std::sync::OnceLock::new();
+    let size = 1.0 / bvh.frame().scale();
+    let is_inside = |node: DVec3, number: i32| {
+        if of_patches.is_below_half(node, 0.0) {
+            number >= 1
+        } else if of_patches.bvh().closest_point(node).distance > TOO_CLOSE * size {
+            !of_patches.exceeds(node, f64::from(number) - 0.5)
+        } else {
+            of_mesh.get_or_init(|| WindingNumber::new(bvh.clone())).is_inside(node)
+        }
+    };
+    let [nx, ny, _] = grid.dims;
+    let slabs = samples.par_chunks_mut(nx * ny * BRICK).zip(numbers.par_chunks(nx * ny * BRICK)).enumerate();
+    slabs.try_for_each(|(slab, (samples, numbers))| {
+        let layers = samples.len() / (nx * ny);
+        for (row, column) in
+            (0..ny.div_ceil(BRICK)).flat_map(|row| (0..nx.div_ceil(BRICK)).map(move |column| (row, column)))
+        {
+            let start = DVec3::new((column * BRICK) as f64, (row * BRICK) as f64, (slab * BRICK) as f64);
+            let half = 0.5 * (BRICK - 1) as f64 * grid.cell;
+            let is_far = of_patches.is_below_half(grid.origin + start * grid.cell + half, 3f64.sqrt() * half);
+            for k in 0..layers {
+                for j in row * BRICK..((row + 1) * BRICK).min(ny) {
+                    for i in column * BRICK..((column + 1) * BRICK).min(nx) {
+                        let index = (k * ny + j) * nx + i;
+                        let number = numbers[index];
+                        let is_inside =
+                            if is_far { number >= 1 } else { is_inside(grid.node(i, j, slab * BRICK + k), number) };
+                        negate_if(&mut samples[index], is_inside);
                     }
                 }
             }
-        }
-        for index in 0..regions.parent.len() {
-            regions.parent[index] = regions.root(index as u32);
-        }
-        regions
-    }
-
-    /// Of each region, the node farthest from the surface, where inside and outside are easiest to tell apart.
-    pub(super) fn representatives(&self, distances: &[f32]) -> Vec<u32> {
-        let mut farthest: Vec<u32> = (0..self.parent.len() as u32).collect();
-        for (index, &root) in self.parent.iter().enumerate() {
-            let best = &mut farthest[root as usize];
-            if distances[index] > distances[*best as usize] {
-                *best = index as u32;
+            if monitor.is_cancelled() {
+                return Err(Cancelled);
             }
         }
-        (self.parent.iter().enumerate())
-            .filter(|&(index, &root)| index as u32 == root)
-            .map(|(index, _)| farthest[index])
-            .collect()
-    }
-
-    /// Makes the distances of the regions of these nodes negative.
-    pub(super) fn negate(&self, distances: &mut [f32], inside: impl Iterator<Item = u32>) {
-        let mut is_inside = vec![false; self.parent.len()];
-        for node in inside {
-            is_inside[self.parent[node as usize] as usize] = true;
-        }
-        for (distance, &root) in distances.iter_mut().zip(&self.parent) {
-            if is_inside[root as usize] {
-                *distance = -*distance;
-            }
-        }
-    }
-
-    fn root(&mut self, mut node: u32) -> u32 {
-        while self.parent[node as usize] != node {
-            let grandparent = self.parent[self.parent[node as usize] as usize];
-            self.parent[node as usize] = grandparent;
-            node = grandparent;
-        }
-        node
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        let (low, high) = if a < b { (a, b) } else { (b, a) };
-        self.parent[high as usize] = low;
-    }
+        Ok(())
+    })?;
+    Ok(())
 }
 
-/// Allows for rounding of the sum of two distances. Larger: more regions, each of which costs a query.
-const ROUNDING: f64 = 1.0 + 1e-6;
+fn negate_if(sample: &mut f32, is_inside: bool) {
+    if is_inside {
+        *sample = -*sample;
+    }
+}

@@ -1,0 +1,67 @@
+//! Patches over the holes of a mesh, which make of its inside a matter of whole numbers and of few triangles.
+
+use glam::DVec3;
+
+use crate::{Bvh, BvhError, WindingNumber};
+
+/// Triangles that close a mesh: a fan over each connected set of open edges, around its centroid.
+///
+/// Where the mesh alone has the winding number w, and mesh and patches together the whole number W, the patches alone have W − w. So
+/// w > ½ exactly where the patches have less than W − ½, and far from them, where they have less than ½ either way, where W ≥ 1.
+#[derive(Debug)]
+pub(super) struct Patches {
+    /// Vertices of the mesh keep their numbers; the centroids follow them.
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) positions: Vec<[DVec3; 3]>,
+}
+
+impl Patches {
+    /// Patches for these [open edges](crate::mesh_distance::open_edges) of a mesh with vertices at `positions`.
+    pub(super) fn over(open_edges: &[[u32; 2]], positions: &[DVec3]) -> Self {
+        // Vertices on open edges, numbered from zero, and the connected sets they form.
+        let mut vertices: Vec<u32> = open_edges.iter().flatten().copied().collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let number = |vertex: u32| vertices.partition_point(|&other| other < vertex);
+        let mut parent: Vec<usize> = (0..vertices.len()).collect();
+        for &[from, to] in open_edges {
+            let (from, to) = (root(&mut parent, number(from)), root(&mut parent, number(to)));
+            parent[from.max(to)] = from.min(to);
+        }
+        let mut counts = vec![0.0; vertices.len()];
+        for i in 0..vertices.len() {
+            counts[root(&mut parent, i)] += 1.0;
+        }
+        let mut centroids = vec![DVec3::ZERO; vertices.len()];
+        for (i, &vertex) in vertices.iter().enumerate() {
+            let set = root(&mut parent, i);
+            centroids[set] += positions[vertex as usize] / counts[set];
+        }
+        let (triangles, positions) = (open_edges.iter())
+            .map(|&[from, to]| {
+                let set = root(&mut parent, number(from));
+                let corners = [positions[to as usize], positions[from as usize], centroids[set]];
+                ([to, from, (positions.len() + set) as u32], corners)
+            })
+            .unzip();
+        Self { triangles, positions }
+    }
+
+    /// Winding numbers with respect to the patches.
+    ///
+    /// # Errors
+    /// Those of [`Bvh::new`]; none for vertices of a mesh that has a hierarchy itself.
+    pub(super) fn winding_number(&self) -> Result<WindingNumber, BvhError> {
+        let triangles: Vec<[u32; 3]> =
+            (0..self.positions.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        Ok(WindingNumber::new(std::sync::Arc::new(Bvh::new(self.positions.as_flattened(), &triangles)?)))
+    }
+}
+
+fn root(parent: &mut [usize], mut i: usize) -> usize {
+    while parent[i] != i {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    i
+}

@@ -1,0 +1,113 @@
+//! Winding numbers of all nodes of a grid, exactly, by counting where its rows cross a closed surface.
+
+use std::sync::atomic::{AtomicI32, Ordering};
+
+use glam::DVec3;
+use rayon::prelude::*;
+use robust::{Coord, Coord3D, orient2d, orient3d};
+
+use super::Grid;
+use crate::bvh::UnitFrame;
+
+/// Crossings of triangles with the rows of a grid, the lines through its nodes along x.
+///
+/// All decisions are exact for the coordinates in the unit frame, and a row that meets an edge or a vertex counts as shifted by an
+/// infinitesimal step along y and by one infinitely smaller along z. So a row crosses a closed surface out as often as in, and the
+/// sum of the crossings before a node, +1 inward and −1 outward, is its winding number. On the surface it is that of either side.
+#[derive(Debug)]
+pub(super) struct RowCrossings {
+    /// Coordinates of the nodes along each axis, in the unit frame.
+    nodes: [Vec<f64>; 3],
+    /// What the winding number changes by between each node and the one before it in its row.
+    changes: Vec<AtomicI32>,
+}
+
+impl RowCrossings {
+    pub(super) fn new(grid: &Grid, frame: &UnitFrame) -> Self {
+        let nodes = [0, 1, 2].map(|axis| {
+            let node = |i: usize| {
+                let mut steps = [0; 3];
+                steps[axis] = i;
+                frame.inward(grid.node(steps[0], steps[1], steps[2]))[axis]
+            };
+            (0..grid.dims[axis]).map(node).collect()
+        });
+        let mut changes = Vec::with_capacity(grid.len());
+        changes.resize_with(grid.len(), AtomicI32::default);
+        Self { nodes, changes }
+    }
+
+    /// Counts the crossings of one triangle. `vertices` tell which corners are shared with other triangles.
+    pub(super) fn add(&self, corners: &[DVec3; 3], vertices: &[u32; 3]) {
+        let [x, y, z] = [0, 1, 2].map(|axis| range_between(&self.nodes[axis], corners.map(|corner| corner[axis])));
+        for k in z {
+            for j in y.clone() {
+                let sides = [0, 1, 2].map(|side| {
+                    let next = (side + 1) % 3;
+                    let (from, to) = (corners[side], corners[next]);
+                    // The same edge gives the same answer to both its triangles.
+                    if vertices[side] < vertices[next] { self.side(from, to, j, k) } else { -self.side(to, from, j, k) }
+                });
+                let orientation = sides[0];
+                if orientation == 0 || sides != [orientation; 3] {
+                    continue;
+                }
+                let point = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+                let [a, b, c] = corners.map(point);
+                let is_past = |&x: &f64| {
+                    let node = point(DVec3::new(x, self.nodes[1][j], self.nodes[2][k]));
+                    // Negative above the triangle.
+                    f64::from(orientation) * orient3d(a, b, c, node) < 0.0
+                };
+                let past = x.start + self.nodes[0][x.clone()].partition_point(|node| !is_past(node));
+                if let Some(change) = self.changes[(k * self.nodes[1].len() + j) * self.nodes[0].len()..]
+                    .get(past)
+                    .filter(|_| past < self.nodes[0].len())
+                {
+                    // Rows run along +x: a triangle that faces that way is crossed from inside.
+                    change.fetch_sub(orientation, Ordering::Relaxed);
+                }
+            }
+        }
+    }
+
+    /// On which side of the line through two points a row runs, seen along −x: 1 to the left, −1 to the right, 0 if the points
+    /// coincide.
+    fn side(&self, from: DVec3, to: DVec3, j: usize, k: usize) -> i32 {
+        let point = |y: f64, z: f64| Coord { x: y, y: z };
+        let side = orient2d(point(from.y, from.z), point(to.y, to.z), point(self.nodes[1][j], self.nodes[2][k]));
+        // On the line, the shift decides: first that along y, then that along z.
+        let decisive = [side, from.z - to.z, to.y - from.y].into_iter().find(|&value| value != 0.0);
+        decisive.map_or(0, |value| if value > 0.0 { 1 } else { -1 })
+    }
+
+    /// Winding numbers in [z, y, x] order.
+    pub(super) fn into_winding_numbers(self) -> Vec<i32> {
+        let mut numbers: Vec<i32> = self.changes.into_iter().map(AtomicI32::into_inner).collect();
+        numbers.par_chunks_mut(self.nodes[0].len()).for_each(|row| {
+            let mut number = 0;
+            for change in row {
+                number += *change;
+                *change = number;
+            }
+        });
+        numbers
+    }
+}
+
+/// Numbers of the nodes that lie between the least and the greatest of these coordinates, or on them; ends at the first node behind.
+fn range_between(nodes: &[f64], coordinates: [f64; 3]) -> std::ops::Range<usize> {
+    let [a, b, c] = coordinates;
+    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+    // Nodes are evenly spaced but for rounding.
+    let step = (nodes[nodes.len() - 1] - nodes[0]) / (nodes.len().max(2) - 1) as f64;
+    let near = |coordinate: f64| (((coordinate - nodes[0]) / step) as usize).min(nodes.len());
+    let mut range = near(min).saturating_sub(1)..(near(max) + 2).min(nodes.len());
+    while range.start < range.end && nodes[range.start] < min {
+        range.start += 1;
+    }
+    while range.start < range.end && nodes[range.end - 1] > max {
+        range.end -= 1;
+    }
+    range
+}
