@@ -11,6 +11,7 @@ mod contact;
 mod footprint;
 mod rim;
 
+use contact::Cause;
 use glam::DVec3;
 use isochore_mesh::{Cancelled, Monitor, signed_volume};
 
@@ -124,7 +125,8 @@ pub(crate) fn press(
 fn step(mesh: &mut Tessellation, leg: &Leg<'_>, volume: f64, pressed: &mut Pressed) -> bool {
     let triangles = mesh.indices();
     for round in 0..MAX_ROUNDS {
-        let near = contact::dent(&mut mesh.image, leg);
+        let cause = if round == 0 { Cause::Motion } else { Cause::Raising };
+        let near = contact::dent(&mut mesh.image, leg, cause);
         pressed.refinement.evaluations += near.evaluations;
         if near.dented.is_empty() {
             return true;

@@ -142,44 +142,40 @@ pub(crate) fn resolve_field(
     monitor: &dyn Monitor,
 ) -> Result<Refinement, Cancelled> {
     split_long_edges(mesh, past, criteria, monitor, |mesh| {
-        let longest_allowed = |index| {
+        let long_edges = |index| {
             let corners = mesh.image_of(index);
-            let longest = edge_lengths(&corners).into_iter().fold(0.0, f64::max);
             let center = (corners[0] + corners[1] + corners[2]) / 3.0;
             let radius = corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max);
             let allowed = stroke.feature_size_near(center, radius);
-            if longest > allowed && stroke.may_touch(center, radius) { allowed } else { f64::INFINITY }
+            let is_long = edge_lengths(&corners).map(|length| length > allowed);
+            if is_long.contains(&true) && stroke.may_touch(center, radius) { is_long } else { [false; 3] }
         };
-        (0..mesh.triangles.len()).into_par_iter().map(longest_allowed).collect()
+        (0..mesh.triangles.len()).into_par_iter().map(long_edges).collect()
     })
 }
 
-/// Splits triangles until none has an edge longer than `longest_allowed` says, which is asked again after every round and
-/// answers by triangle.
+/// Splits triangles until none has an edge that `long_edges` finds too long. It is asked again after every round, and answers
+/// for the edges 01, 12 and 20 of every triangle.
 pub(crate) fn split_long_edges(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
     criteria: &Criteria,
     monitor: &dyn Monitor,
-    mut longest_allowed: impl FnMut(&Tessellation) -> Vec<f64>,
+    mut long_edges: impl FnMut(&Tessellation) -> Vec<[bool; 3]>,
 ) -> Result<Refinement, Cancelled> {
     let mut refinement = Refinement::default();
     for _ in 0..MAX_ROUNDS {
         monitor.check("refine", 0.0)?;
-        let allowed = longest_allowed(mesh);
-        let is_long = |mesh: &Tessellation, index: usize| {
-            edge_lengths(&mesh.image_of(index)).into_iter().any(|length| length > allowed[index])
-        };
-        let long: Vec<usize> = (0..mesh.triangles.len()).filter(|&index| is_long(mesh, index)).collect();
-        if long.is_empty() {
+        let is_long = long_edges(mesh);
+        if is_long.iter().all(|edges| *edges == [false; 3]) {
             break;
         }
-        refinement.evaluations += mesh.track(strokes, is_long, monitor)?;
+        refinement.evaluations += mesh.track(strokes, |_, index| is_long[index] != [false; 3], monitor)?;
         let mut is_split = vec![false; mesh.midpoint_count()];
-        for index in long {
+        for (index, is_long) in is_long.into_iter().enumerate().filter(|(_, edges)| *edges != [false; 3]) {
             let Some(midpoints) = mesh.midpoints_of(index) else { continue };
-            for (midpoint, length) in midpoints.into_iter().zip(edge_lengths(&mesh.image_of(index))) {
-                is_split[midpoint as usize] |= length > allowed[index];
+            for (midpoint, is_long) in midpoints.into_iter().zip(is_long) {
+                is_split[midpoint as usize] |= is_long;
             }
         }
         refinement.evaluations += add_longest_edges(mesh, strokes, &mut is_split, monitor)?;

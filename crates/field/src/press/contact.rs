@@ -51,8 +51,17 @@ pub(super) fn sample(tool: &Tool, placement: &Placement, points: &[DVec3]) -> (V
     points.par_chunks(LANES).flat_map_iter(block).unzip()
 }
 
-/// Takes every vertex that the tool has run over in this leg along to where it lies on the tool's surface.
-pub(super) fn dent(positions: &mut [DVec3], leg: &Leg<'_>) -> Near {
+/// How what lies in the tool got there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Cause {
+    /// The tool ran over it: it goes along with the tool.
+    Motion,
+    /// It was raised into the tool, which has not moved since: it leaves by the shortest way.
+    Raising,
+}
+
+/// Takes every vertex that lies in the tool at the end of the leg to where it lies on the tool's surface.
+pub(super) fn dent(positions: &mut [DVec3], leg: &Leg<'_>, cause: Cause) -> Near {
     let mut near = Near::of(positions, leg.tool, &leg.end);
     near.dented =
         (0..near.vertices.len() as u32).filter(|&index| near.distances[index as usize] < -leg.rounding).collect();
@@ -62,7 +71,10 @@ pub(super) fn dent(positions: &mut [DVec3], leg: &Leg<'_>) -> Near {
         .map(|&index| {
             let position = positions[near.vertices[index as usize] as usize];
             let [from, to] = [&leg.end, &leg.start].map(|placement| placement.to_local(position));
-            Search::new(from, near.distances[index as usize], to)
+            match cause {
+                Cause::Motion => Search::along(from, near.distances[index as usize], to),
+                Cause::Raising => Search::out_of(from),
+            }
         })
         .collect();
     let found: Vec<Search> =
@@ -124,7 +136,8 @@ const MAX_NEWTON_STEPS: u64 = 20;
 const AIM: f64 = 1.0 / 16.0;
 
 impl Search {
-    fn new(from: DVec3, distance: f64, to: DVec3) -> Self {
+    /// The search for the first point of a way that is on the surface.
+    fn along(from: DVec3, distance: f64, to: DVec3) -> Self {
         Self {
             from,
             to,
@@ -137,6 +150,11 @@ impl Search {
             gradient: DVec3::ZERO,
             evaluations: 0,
         }
+    }
+
+    /// The search for a point of the surface near one inside.
+    fn out_of(point: DVec3) -> Self {
+        Self { stage: Stage::Leave, aside: Some(point), ..Self::along(point, f64::NEG_INFINITY, point) }
     }
 
     /// The point that is looked at, in tool coordinates.
@@ -188,7 +206,7 @@ impl Search {
             if is_narrow || self.evaluations >= MAX_EVALUATIONS {
                 // Better a rounding outside than inside.
                 (self.at, self.value) = self.outside;
-                self.stage = Stage::Done;
+                return self.stage = Stage::Done;
             } else {
                 self.at = next;
             }

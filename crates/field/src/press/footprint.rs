@@ -13,8 +13,13 @@ use crate::{
 /// Edges across the support, at least, where something is raised. Fewer make an angular rim; more cost triangles.
 const EDGES_ACROSS_RIM: f64 = 8.0;
 
+/// Wherever the tool drags the surface along its walls, edges grow long with it. Up to this many times the relief they are left
+/// alone: vertices put there would go with the wall's least bumps, and past each other. Larger leaves deep walls coarse.
+const WALL: f64 = 12.0;
+
 /// Splits triangles of the frozen mesh where the tool touches them at the end of the leg, down to the relief, and where its
-/// support reaches around a contact. New vertices are the middles of edges, so that no volume changes.
+/// support reaches around a contact. Edges of the relief are measured across the way of the tool. New vertices are the middles
+/// of edges, so that no volume changes.
 pub(super) fn resolve(
     mesh: &mut Tessellation,
     leg: &Leg<'_>,
@@ -25,41 +30,49 @@ pub(super) fn resolve(
     let rim_edge = if pressed.has_touched { leg.tool.support() / EDGES_ACROSS_RIM } else { f64::INFINITY };
     let mut evaluations = 0;
     let split = split_long_edges(mesh, &[], criteria, monitor, |mesh| {
-        let (most, count) = longest_edges(mesh, leg, rim_edge.max(leg.relief));
+        let (is_long, count) = long_edges(mesh, leg, rim_edge.max(leg.relief));
         evaluations += count;
-        most
+        is_long
     })?;
     pressed.refinement.add(&split);
     pressed.refinement.evaluations += evaluations;
     Ok(())
 }
 
-/// For each triangle the longest edge it may have, and the number of evaluations.
-fn longest_edges(mesh: &Tessellation, leg: &Leg<'_>, rim_edge: f64) -> (Vec<f64>, u64) {
+/// For each triangle which of its edges are too long, and the number of evaluations.
+fn long_edges(mesh: &Tessellation, leg: &Leg<'_>, rim_edge: f64) -> (Vec<[bool; 3]>, u64) {
+    let distance = leg.tool.distance();
     let bounds = leg.tool.support_bounds();
-    let mut longest = vec![f64::INFINITY; mesh.triangles.len()];
+    let mut is_long = vec![[false; 3]; mesh.triangles.len()];
     let mut near = Vec::new();
     for index in 0..mesh.triangles.len() {
         let corners = mesh.image_of(index);
-        let edge = edge_lengths(&corners).into_iter().fold(0.0, f64::max);
+        let longest = edge_lengths(&corners).into_iter().fold(0.0, f64::max);
         let center = (corners[0] + corners[1] + corners[2]) / 3.0;
         // No corner is farther from the center of mass than two thirds of the longest edge.
-        if edge > leg.relief && bounds.distance(leg.end.to_local(center)) <= 2.0 / 3.0 * edge {
+        if longest > leg.relief && bounds.distance(leg.end.to_local(center)) <= 2.0 / 3.0 * longest {
             near.push((index, center, corners));
         }
     }
     let centers: Vec<DVec3> = near.iter().map(|(_, center, _)| *center).collect();
     let (distances, _) = sample(leg.tool, &leg.end, &centers);
-    for ((index, center, corners), distance) in near.iter().zip(distances) {
+    for ((index, center, corners), known) in near.iter().zip(distances) {
         let radius = corners.iter().map(|corner| corner.distance(*center)).fold(0.0, f64::max);
         // Where the distance is not known, that from the box is a lower bound.
-        let beyond = leg.tool.distance().bounds().distance(leg.end.to_local(*center));
-        let clearance = if distance.is_finite() { distance / leg.tool.distance().lipschitz() } else { beyond } - radius;
+        let beyond = || distance.bounds().distance(leg.end.to_local(*center));
+        let clearance = if known.is_finite() { known / distance.lipschitz() } else { beyond() } - radius;
         if clearance <= 0.0 {
-            longest[*index] = leg.relief;
-        } else if clearance <= leg.tool.support() {
-            longest[*index] = rim_edge;
+            // Zero where the tool stands still: then all of an edge counts.
+            let way = (leg.end.to_world(leg.start.to_local(*center)) - *center).normalize_or_zero();
+            let across = corners.map(|corner| corner - corner.dot(way) * way);
+            is_long[*index] = edge_lengths(&across).map(|length| length > leg.relief);
+        }
+        let most = if clearance <= 0.0 { WALL * leg.relief } else { rim_edge };
+        if clearance <= leg.tool.support() {
+            for (is_long, length) in is_long[*index].iter_mut().zip(edge_lengths(corners)) {
+                *is_long |= length > most;
+            }
         }
     }
-    (longest, centers.len() as u64)
+    (is_long, centers.len() as u64)
 }

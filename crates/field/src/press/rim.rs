@@ -21,9 +21,9 @@ pub(super) struct Rim {
 /// angle. Larger lowers the rim on round bodies; smaller creases the edge between what is raised and what is not.
 const FACING: f64 = 0.5;
 
-/// Cosine of the angle between a dented vertex' normal and the tool's at which it was struck from its own side for sure, or
-/// from behind with the sign turned. Larger overlooks the far side of a sheet; smaller takes rough ground for two sides.
-const STRUCK: f64 = 0.5;
+/// Share of the area dented in a step, seen along the tool's normals, that is struck from the other side than the rest when the
+/// tool goes through a sheet. Larger overlooks sheets of uneven thickness; smaller takes rough ground for a sheet.
+const FAR_SIDE: f64 = 0.1;
 
 /// No vertex.
 const NONE: u32 = u32::MAX;
@@ -49,11 +49,13 @@ impl Rim {
         let is_contact = |index: usize| near.distances[index].abs() <= leg.rounding;
         let toward = (0..normals.len()).filter(|&index| is_contact(index)).map(|index| normals[index]).sum::<DVec3>();
         let toward = toward.normalize_or_zero();
+        let mut areas = [0.0; 2];
+        for &index in &near.dented {
+            let area = normals[index as usize].dot(near.gradients[index as usize].normalize_or_zero());
+            areas[usize::from(area > 0.0)] += area.abs();
+        }
+        let is_through = areas[0].min(areas[1]) > FAR_SIDE * (areas[0] + areas[1]);
         normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
-
-        let side = |index: u32| normals[index as usize].dot(near.gradients[index as usize].normalize_or_zero());
-        let is_through = near.dented.iter().any(|&index| side(index) > STRUCK)
-            && near.dented.iter().any(|&index| side(index) < -STRUCK);
 
         // A tool that is touched all around has no side; then all that hangs together is raised.
         let facing = |index: usize| if toward == DVec3::ZERO { 1.0 } else { normals[index].dot(toward) };
