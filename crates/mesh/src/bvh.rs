@@ -9,6 +9,7 @@ mod tests;
 use glam::{DVec3, Vec3A};
 use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use rayon::prelude::*;
 
 pub use closest_point::{ClosestPoint, Feature};
 pub(crate) use closest_point::{OnTriangle, SquaredDistance, closest_on_triangle};
@@ -85,8 +86,8 @@ impl Bvh {
         check(positions, triangles)?;
         let frame = UnitFrame::around(triangles.iter().flatten().map(|&vertex| positions[vertex as usize]));
         let corners: Vec<_> =
-            triangles.iter().map(|t| t.map(|vertex| frame.inward(positions[vertex as usize]))).collect();
-        let boxes: Vec<_> = corners.iter().map(outward_box).collect();
+            triangles.par_iter().map(|t| t.map(|vertex| frame.inward(positions[vertex as usize]))).collect();
+        let boxes: Vec<_> = corners.par_iter().map(outward_box).collect();
 
         // The portable builder: the convenience functions around it read the clock, which WebAssembly has not.
         let indices = (0..boxes.len() as u32).collect();
@@ -113,8 +114,8 @@ impl Bvh {
             frame,
             depth: depth(&nodes),
             nodes,
-            triangles: order.iter().map(|&i| triangles[i as usize]).collect(),
-            corners: order.iter().map(|&i| corners[i as usize]).collect(),
+            triangles: order.par_iter().map(|&i| triangles[i as usize]).collect(),
+            corners: order.par_iter().map(|&i| corners[i as usize]).collect(),
             order,
         })
     }

@@ -44,14 +44,17 @@ pub struct DistanceFieldOptions {
     pub resolution: usize,
     /// What to add around the mesh.
     pub padding: Padding,
+    /// Distances are told apart up to this far from the surface, model units; nodes farther away, inside or outside, have this
+    /// distance, and cost nearly nothing. Infinite for all.
+    pub band: f64,
     /// Bytes that building may take at most, estimated before any is taken.
     pub memory_limit: u64,
 }
 
 impl Default for DistanceFieldOptions {
-    /// 64 cells, padded by 2, in at most 4 GiB.
+    /// 64 cells, padded by 2, in at most 4 GiB, without end of the band.
     fn default() -> Self {
-        Self { resolution: 64, padding: Padding::Cells(2), memory_limit: 4 << 30 }
+        Self { resolution: 64, padding: Padding::Cells(2), band: f64::INFINITY, memory_limit: 4 << 30 }
     }
 }
 
@@ -76,6 +79,12 @@ pub enum DistanceFieldError {
     Padding {
         /// The offending value, model units.
         length: f64,
+    },
+    /// The band has no width.
+    #[error("a band of distances is wider than zero, not {width}")]
+    Band {
+        /// The offending value, model units.
+        width: f64,
     },
     /// All vertices coincide, or lie so far apart that their distance overflows.
     #[error("a mesh with an extent of {extent} has no distance grid")]
@@ -133,6 +142,10 @@ pub struct DistanceField {
     is_closed: bool,
 }
 
+/// Cells before the end of the band where the field is trusted no more. Larger: less reach. Smaller than 2: the smoothed kink at
+/// the end of the band would count as distance.
+const KINK_CELLS: f64 = 2.0;
+
 /// Bytes a node takes while the field is built: sample, coefficient, winding number, and two copies in `f64` between the filters.
 const BYTES_PER_NODE: u64 = 4 + 4 + 4 + 2 * 8;
 
@@ -149,6 +162,9 @@ impl DistanceField {
         let bvh = Arc::new(Bvh::new(&mesh.positions, &mesh.triangles)?);
         let surface = surface_bounds(mesh);
         let grid = Grid::around(surface, options.resolution, options.padding)?;
+        if options.band.is_nan() || options.band <= 0.0 {
+            return Err(DistanceFieldError::Band { width: options.band });
+        }
         let bytes = (grid.len() as u64).saturating_mul(BYTES_PER_NODE);
         if bytes > options.memory_limit || grid.len() > u32::MAX as usize {
             return Err(DistanceFieldError::Memory { dims: grid.dims, bytes, limit: options.memory_limit });
@@ -160,16 +176,19 @@ impl DistanceField {
             return Err(DistanceFieldError::InsideOut { volume });
         }
 
-        let (mut samples, sample_error) = sampling::unsigned(&bvh, &grid, monitor)?;
+        let (mut samples, sample_error) = sampling::unsigned(&bvh, &grid, options.band, monitor)?;
         monitor.check("signs", 0.0)?;
         signs::negate_inside(&mut samples, mesh, &open_edges, &bvh, &grid, monitor)?;
+        // At the end of the band the distance has a kink, which the spline smooths as it does others.
+        let reach_of_band = (options.band - KINK_CELLS * grid.cell).max(0.0);
         let reach = match options.padding {
             Padding::Reach(reach) => {
+                let reach = reach.min(reach_of_band);
                 check_border(&grid, &samples, reach)?;
                 reach
             }
-            Padding::Length(length) => (length - 2.0 * grid.cell).max(0.0),
-            Padding::Cells(cells) => cells.saturating_sub(2) as f64 * grid.cell,
+            Padding::Length(length) => (length - 2.0 * grid.cell).max(0.0).min(reach_of_band),
+            Padding::Cells(cells) => (cells.saturating_sub(2) as f64 * grid.cell).min(reach_of_band),
         };
         monitor.check("spline", 0.0)?;
         let interpolant = Interpolant::new(&grid, &samples);

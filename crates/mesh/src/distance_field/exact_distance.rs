@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use super::packet::LANES;
+use super::packet::{LANES, NOTHING};
 
 type Lanes = [f64; LANES];
 
@@ -22,7 +22,7 @@ impl Points {
     }
 }
 
-/// Squared distance of each point to the triangle in its slot.
+/// Squared distance of each point to the triangle in its slot; infinite for no triangle.
 ///
 /// As [`closest_on_triangle`](crate::bvh::closest_on_triangle), but without branches: the least of the distances to the three
 /// edges and, if the point is above the triangle, to its plane. Every candidate is a convex combination of corners, so that the
@@ -31,9 +31,10 @@ impl Points {
 pub(super) fn exact_squared_distances(points: &Points, corners: &[[DVec3; 3]], slots: &[u32; LANES]) -> Lanes {
     let mut held = [const { Points::ZERO }; 3];
     for lane in 0..LANES {
-        let triangle = &corners[slots[lane] as usize];
-        for k in 0..3 {
-            held[k].set(lane, triangle[k]);
+        if let Some(triangle) = corners.get(slots[lane] as usize) {
+            for k in 0..3 {
+                held[k].set(lane, triangle[k]);
+            }
         }
     }
     let mut squared = [0.0; LANES];
@@ -64,6 +65,7 @@ pub(super) fn exact_squared_distances(points: &Points, corners: &[[DVec3; 3]], s
         let to_plane = dot(apart, apart);
         let is_above = lesser(spans[0], lesser(spans[1], spans[2])) > 0.0;
         squared[i] = if is_above & (to_plane < to_border) { to_plane } else { to_border };
+        squared[i] = if slots[i] == NOTHING { f64::INFINITY } else { squared[i] };
     }
     squared
 }

@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 use super::packet::{LANES, Lanes, Packet, greater};
 use crate::Bvh;
@@ -32,7 +33,7 @@ impl OrientedBox {
                 Piece::join(&pieces[node.first as usize], &pieces[node.first as usize + 1])
             };
         }
-        pieces.iter().map(|piece| Self::around(piece, bvh, largest)).collect()
+        pieces.par_iter().map(|piece| Self::around(piece, bvh, largest)).collect()
     }
 
     fn around(piece: &Piece, bvh: &Bvh, largest: f64) -> Self {

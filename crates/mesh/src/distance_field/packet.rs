@@ -3,6 +3,8 @@
 //! Neighbors share their way through the hierarchy and start from what the packet beside them found, and the arithmetic has no
 //! branches, so that lanes become vector registers.
 
+use rayon::prelude::*;
+
 use super::flat_triangle::FlatTriangle;
 use super::oriented_box::OrientedBox;
 use crate::bvh::{Bvh, Node};
@@ -36,9 +38,12 @@ pub(super) struct Packet {
     pub(super) z: Lanes,
     /// Squared distances.
     pub(super) squared: Lanes,
-    /// Nearest triangles, in leaf order.
+    /// Nearest triangles, in leaf order; [`NOTHING`] where all are farther than the search reaches.
     pub(super) slot: [u32; LANES],
 }
+
+/// The slot of no triangle.
+pub(super) const NOTHING: u32 = u32::MAX;
 
 /// A node that waits for its search, with the squared distances to its box.
 #[derive(Debug, Clone)]
@@ -63,7 +68,7 @@ impl Packet {
 impl<'a> PacketSearch<'a> {
     /// For points whose coordinates in the unit frame are not larger than `largest`.
     pub(super) fn new(bvh: &'a Bvh, largest: f64) -> Self {
-        let triangles = bvh.corners().iter().map(FlatTriangle::new).collect();
+        let triangles = bvh.corners().par_iter().map(FlatTriangle::new).collect();
         Self { nodes: bvh.nodes(), boxes: OrientedBox::of_nodes(bvh, largest), triangles }
     }
 

@@ -7,14 +7,14 @@ use rayon::prelude::*;
 
 use super::Grid;
 use super::exact_distance::{Points, exact_squared_distances};
-use super::packet::{LANES, PACKET, Packet, PacketSearch};
+use super::packet::{LANES, NOTHING, PACKET, Packet, PacketSearch};
 use crate::{Aabb, Bvh, Cancelled, Monitor};
 
 /// Distances without sign, and a bound on their error, both in model units.
 ///
 /// Triangles are chosen in `f32` and measured in `f64`, so that an error can only come from a choice between triangles that are
-/// nearly equally near, and from rounding the result.
-pub(super) fn unsigned(bvh: &Bvh, grid: &Grid, monitor: &dyn Monitor) -> Result<(Vec<f32>, f64), Cancelled> {
+/// nearly equally near, and from rounding the result. Nodes farther than `band` get that distance.
+pub(super) fn unsigned(bvh: &Bvh, grid: &Grid, band: f64, monitor: &dyn Monitor) -> Result<(Vec<f32>, f64), Cancelled> {
     let largest = largest_coordinate(bvh, grid);
     let search = PacketSearch::new(bvh, largest);
     let [nx, ny, nz] = grid.dims;
@@ -24,7 +24,7 @@ pub(super) fn unsigned(bvh: &Bvh, grid: &Grid, monitor: &dyn Monitor) -> Result<
     let done = AtomicUsize::new(0);
     // A slab knows nothing of other slabs, so that the result does not depend on how threads share them.
     samples.par_chunks_mut(slab).enumerate().try_for_each(|(number, samples)| {
-        let slab = Slab { search: &search, bvh, grid, layer: number * PACKET[2] };
+        let slab = Slab { search: &search, bvh, grid, band, layer: number * PACKET[2] };
         let mut guesses = Vec::new();
         for strip in 0..ny.div_ceil(PACKET[1]) {
             if monitor.is_cancelled() {
@@ -44,6 +44,7 @@ struct Slab<'a> {
     search: &'a PacketSearch<'a>,
     bvh: &'a Bvh,
     grid: &'a Grid,
+    band: f64,
     /// The first of the layers.
     layer: usize,
 }
@@ -52,7 +53,10 @@ struct Slab<'a> {
 /// beside the last of the strip before, and the triangles found there, `guesses`, are near.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
 fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], guesses: &mut Vec<u32>) {
-    let Slab { search, bvh, grid, layer } = *slab;
+    let Slab { search, bvh, grid, band, layer } = *slab;
+    let scale = bvh.frame().scale();
+    // A little more, so that rounding finds too much rather than too little.
+    let reach = band * scale * (1.0 + 4.0 * EPSILON);
     let [nx, ny, _] = grid.dims;
     let layers = samples.len() / (nx * ny);
     let columns = nx.div_ceil(PACKET[0]);
@@ -73,17 +77,22 @@ fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], guesses: &mu
             x: points.x.map(|x| x as f32),
             y: points.y.map(|y| y as f32),
             z: points.z.map(|z| z as f32),
-            squared: [f32::INFINITY; LANES],
-            slot: [0; LANES],
+            squared: [(reach * reach) as f32; LANES],
+            slot: [NOTHING; LANES],
         };
         search.search(&mut packet, guesses, &mut stack);
+        if packet.slot == [NOTHING; LANES] {
+            index.iter().for_each(|&index| samples[index] = band as f32);
+            guesses.clear();
+            continue;
+        }
         let squared = exact_squared_distances(&points, bvh.corners(), &packet.slot);
         for lane in 0..LANES {
-            samples[index[lane]] = (squared[lane].sqrt() / bvh.frame().scale()) as f32;
+            samples[index[lane]] = (squared[lane].sqrt() / scale).min(band) as f32;
         }
         guesses.clear();
         for &slot in &packet.slot {
-            if !guesses.contains(&slot) {
+            if slot != NOTHING && !guesses.contains(&slot) {
                 guesses.push(slot);
             }
         }

@@ -252,6 +252,27 @@ fn same_bits_for_any_number_of_threads() {
 }
 
 #[test]
+fn band_ends_the_distances() {
+    let mesh = bumpy();
+    let all = field(&mesh, 24, Padding::Reach(0.4));
+    let options =
+        DistanceFieldOptions { resolution: 24, padding: Padding::Reach(0.4), band: 0.3, ..Default::default() };
+    let band = DistanceField::new(&mesh, &options, &Silent).unwrap();
+    assert_eq!(all.grid(), band.grid());
+    for (&all, &within) in all.samples().iter().zip(band.samples()) {
+        assert!((f64::from(within) - f64::from(all).clamp(-0.3, 0.3)).abs() <= band.sample_error());
+    }
+    assert_eq!(band.reach(), 0.3 - 2.0 * band.grid().cell);
+    // A kink fades from one node to the next by 2 − √3, here over at least two: 0.07 of half the kink, a cell.
+    for point in scattered(band.grid().bounds(), 20_000) {
+        let (expected, found) = (all.sample(point).0, band.sample(point).0);
+        if expected.abs() < band.reach() && found.is_finite() {
+            assert!((found - expected).abs() < 0.07 * 0.5 * band.grid().cell, "{point}: {found}, not {expected}");
+        }
+    }
+}
+
+#[test]
 fn open_mesh_is_sampled_too() {
     let mut mesh = icosphere(1.0, 3);
     mesh.triangles.retain(|t| t.iter().all(|&v| mesh.positions[v as usize].z < 0.3));
@@ -275,6 +296,7 @@ fn bad_input_is_named() {
         let padding = Padding::Reach(length);
         assert_eq!(with(&mesh, DistanceFieldOptions { padding, ..options }), DistanceFieldError::Padding { length });
     }
+    assert_eq!(with(&mesh, DistanceFieldOptions { band: 0.0, ..options }), DistanceFieldError::Band { width: 0.0 });
     for resolution in [1_000, 1_000_000, usize::MAX] {
         let error = with(&mesh, DistanceFieldOptions { resolution, ..options });
         assert!(matches!(error, DistanceFieldError::Memory { limit, .. } if limit == 4 << 30), "{error}");
