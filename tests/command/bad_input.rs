@@ -75,6 +75,23 @@ fn wrong_recipes() {
 }
 
 #[test]
+fn unusable_masks() {
+    let mask = "[mask]\nvertices = \"mask.csv\"\n[output]";
+    let refuse_weights = |text: &str, words: &[&str]| refuse("[output]", mask, &[("mask.csv", text)], words);
+    refuse_weights("0\n1\n1.5\n", &["mask.csv: row 3: 1.5 is not a weight"]);
+    refuse_weights("weight\n0\nhalf\n", &["mask.csv: row 3, column 1: `half` is not a number"]);
+    refuse_weights("0\n1\n", &["press.toml: mask.vertices: there are 2 weights for 642 vertices"]);
+    let target = "mesh = \"a.obj\"\n";
+    let shape = "shape = { kind = \"icosphere\", radius = 1.0, subdivisions = 3 }";
+    let masked = format!("{target}[mask]\nvertices = \"mask.csv\"");
+    let refuse_rows = |text: &str, words: &[&str]| {
+        refuse(shape, &masked, &[("a.obj", TETRAHEDRON), ("mask.csv", text)], words);
+    };
+    refuse_rows("0\n1\n0\n", &["mask.csv: row 3: this weight is the last: 3 weights for the 4 vertices of the target"]);
+    refuse_rows("0\n1\n0\n1\n0\n", &["mask.csv: row 5: this weight comes after the last vertex"]);
+}
+
+#[test]
 fn unusable_tool_meshes() {
     let tool = |resolution: u32| format!("{{ kind = \"mesh\", mesh = \"tool.obj\", resolution = {resolution} }}");
     let sphere = "{ kind = \"sphere\", radius = 0.4 }";

@@ -13,11 +13,11 @@ use isochore_mesh::{
 use isochore_picture::Camera;
 use isochore_sculpt::{
     Meshes, Recipe, Replay, ReplayError, Report, Source,
-    recipe::{Format, Override},
+    recipe::{Format, Override, VertexWeights},
     replay,
 };
 
-use crate::{command_error::CommandError, console::Console, preview, staging::Staging};
+use crate::{command_error::CommandError, console::Console, csv_table::CsvTable, preview, staging::Staging};
 
 /// A recipe and the places of its outputs.
 #[derive(Debug)]
@@ -66,10 +66,18 @@ impl Job {
         Ok(Self { path: path.to_owned(), text: bytes, settings: settings.to_vec(), recipe, outputs })
     }
 
-    /// Reads the meshes that the recipe names.
-    pub(crate) fn read_meshes(&self) -> Result<Meshes, CommandError> {
+    /// Reads the meshes that the recipe names, and puts the weights of its mask in the place of their file's name.
+    pub(crate) fn read_meshes(&mut self) -> Result<Meshes, CommandError> {
         let names = self.recipe.mesh_names().into_iter();
-        names.map(|name| Ok((name.to_owned(), io::read(beside(&self.path, name))?))).collect()
+        let meshes: Meshes = names
+            .map(|name| Ok((name.to_owned(), io::read(beside(&self.path, name))?)))
+            .collect::<Result<_, CommandError>>()?;
+        if let Some(VertexWeights::File(name)) = &self.recipe.mask.vertices {
+            let target = self.recipe.target.mesh.as_ref().and_then(|name| meshes.get(name));
+            let weights = read_weights(&beside(&self.path, name), target.map(|mesh| mesh.positions.len()))?;
+            self.recipe.mask.vertices = Some(VertexWeights::Values(weights));
+        }
+        Ok(meshes)
     }
 
     /// Deforms the target and puts all outputs in place, together with what `staging` already holds.
@@ -200,6 +208,21 @@ pub(crate) fn write_mesh(staging: &Staging, draft: &Path, mesh: &TriMesh) -> Res
         }
         .into()
     })
+}
+
+/// The weights of a mask, one a row, for a target of this many vertices where it is known yet.
+fn read_weights(path: &Path, vertices: Option<usize>) -> Result<Vec<f64>, CommandError> {
+    let table = CsvTable::read(path, &[1])?;
+    let weights: Vec<f64> = table.rows.iter().map(|row| row[0]).collect();
+    if let Some(vertices) = vertices.filter(|&vertices| vertices != weights.len()) {
+        let end = if weights.len() > vertices { "comes after the last vertex" } else { "is the last" };
+        let problem = format!("this weight {end}: {} weights for the {vertices} vertices of the target", weights.len());
+        return Err(table.error(weights.len().min(vertices), problem));
+    }
+    match weights.iter().position(|weight| !(0.0..=1.0).contains(weight)) {
+        Some(row) => Err(table.error(row, format_args!("{} is not a weight from 0, free, to 1, held", weights[row]))),
+        None => Ok(weights),
+    }
 }
 
 /// The file that a recipe at `recipe` calls `name`.

@@ -2,6 +2,7 @@
 
 mod deserialize;
 mod error;
+mod mask;
 mod shape;
 mod stroke;
 mod tagged;
@@ -14,6 +15,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use error::{Location, RecipeError, RecipeProblem};
+pub use mask::{Mask, MirrorPlane, Pin, VertexWeights};
 pub use shape::{
     BoxMesh, Capsule, Ellipsoid, Icosphere, MeshTool, RoundedBox, Sphere, SphereMesh, TargetShape, ToolShape, Torus,
 };
@@ -51,6 +53,9 @@ pub struct Recipe {
     /// The final correction of the volume.
     #[serde(default, skip_serializing_if = "is_default")]
     pub volume: Volume,
+    /// What holds the strokes back.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub mask: Mask,
     /// Where the results go.
     #[serde(default, skip_serializing_if = "is_default")]
     pub output: Output,
@@ -133,7 +138,7 @@ impl fmt::Display for Profile {
 pub struct Integrate {
     /// Travel of the fastest point of the tool's surface in one step, as a fraction of the support or of half the tool's
     /// shortest extent, whichever is less.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
     pub step: f64,
 }
 

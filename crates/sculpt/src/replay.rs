@@ -42,7 +42,7 @@ pub fn replay(recipe: &Recipe, meshes: &Meshes, monitor: &dyn Monitor) -> Result
     Ok(Replay { scene, deformed })
 }
 
-/// Carries `points`, in world coordinates, along the strokes of `recipe`. Its target is not looked at.
+/// Carries `points`, in world coordinates, along the strokes of `recipe`. Its target is looked at for its mask alone.
 ///
 /// A point set has no surface: a stamp is refused. It has no volume: the lock is left out, so that points agree with the vertices of a mesh before its lock.
 ///

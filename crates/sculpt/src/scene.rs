@@ -1,5 +1,7 @@
 //! The objects that a recipe's plain data describe.
 
+mod mask;
+
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::Arc,
@@ -15,7 +17,7 @@ use isochore_mesh::{
 
 use crate::{
     recipe::{
-        Key, Profile, Recipe, RecipeError, RecipeProblem, Stroke, Target, TargetShape, Tool, ToolShape, Transform,
+        Key, Mask, Profile, Recipe, RecipeError, RecipeProblem, Stroke, Target, TargetShape, Tool, ToolShape, Transform,
     },
     replay::{Meshes, ReplayError},
 };
@@ -55,7 +57,10 @@ impl Scene {
         }
         let mut workshop = Workshop { recipe, meshes, monitor, warnings: Vec::new() };
         let start = Instant::now();
-        let strokes = workshop.strokes()?;
+        let mut strokes = workshop.strokes()?;
+        if recipe.mask != Mask::default() {
+            strokes = mask::masked(strokes, recipe, &target)?;
+        }
         let refine = field::RefineOptions {
             volume: recipe.refine.volume,
             deviation: recipe.refine.deviation,
@@ -73,6 +78,8 @@ impl Scene {
 
     /// Makes the strokes of `recipe` alone, for points that are no mesh, and what the user should know about them.
     ///
+    /// A mask belongs to the target, so with one the target's mesh must be there too.
+    ///
     /// # Errors
     /// [`ReplayError`], naming the key of the recipe that cannot be followed.
     pub fn strokes(
@@ -82,7 +89,10 @@ impl Scene {
     ) -> Result<(Vec<field::Stroke>, Vec<String>), ReplayError> {
         recipe.validate()?;
         let mut workshop = Workshop { recipe, meshes, monitor, warnings: Vec::new() };
-        let strokes = workshop.strokes()?;
+        let mut strokes = workshop.strokes()?;
+        if recipe.mask != Mask::default() {
+            strokes = mask::masked(strokes, recipe, &target(&recipe.target, meshes)?)?;
+        }
         Ok((strokes, workshop.warnings))
     }
 }

@@ -95,6 +95,14 @@ pub enum RecipeProblem {
         /// The smallest that makes sense.
         least: u64,
     },
+    /// A number above its maximum.
+    #[error("is {found}; give {most} or less")]
+    AboveMost {
+        /// The number.
+        found: f64,
+        /// The largest that makes sense.
+        most: f64,
+    },
     /// A request for more than fits.
     #[error("asks for {requested} {what}, more than the {most} allowed; choose a coarser one")]
     TooLarge {

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 
 use super::{
-    Key, Recipe, Target, TargetShape, Tool, ToolShape, Transform,
+    Key, Mask, Recipe, Target, TargetShape, Tool, ToolShape, Transform, VertexWeights,
     error::{RecipeError, RecipeProblem, nearest},
     stroke::Stroke,
 };
@@ -44,6 +44,8 @@ impl Recipe {
             self.stroke(item).map_err(|error| error.inside(&index.to_string()).inside("stroke"))?;
         }
         positive("integrate.step", self.integrate.step)?;
+        at_most("integrate.step", self.integrate.step, 1.0)?;
+        mask(&self.mask).map_err(|error| error.inside("mask"))?;
         positive("refine.volume", self.refine.volume)?;
         positive("refine.deviation", self.refine.deviation)?;
         self.refine.max_edge.map_or(Ok(()), |length| positive("refine.max_edge", length))?;
@@ -106,6 +108,32 @@ fn keys(keys: &[Key]) -> Check {
         before = Some(rotation);
     }
     Ok(())
+}
+
+fn mask(mask: &Mask) -> Check {
+    for (index, pin) in mask.pins.iter().enumerate() {
+        let path = |name: &str| format!("pins.{index}.{name}");
+        all_finite(&path("center"), &pin.center)?;
+        not_negative(&path("radius"), pin.radius)?;
+        positive(&path("support"), pin.support)?;
+    }
+    for (index, plane) in mask.mirror.iter().enumerate() {
+        let path = |name: &str| format!("mirror.{index}.{name}");
+        all_finite(&path("point"), &plane.point)?;
+        direction(&path("normal"), &plane.normal)?;
+    }
+    if let Some(VertexWeights::Values(weights)) = &mask.vertices {
+        for (index, &weight) in weights.iter().enumerate() {
+            let key = format!("vertices.{index}");
+            not_negative(&key, weight)?;
+            at_most(&key, weight, 1.0)?;
+        }
+    }
+    if mask.fade.is_some() && mask.vertices.is_none() {
+        let text = "is how the hold of `vertices` fades; add them, or remove this".to_owned();
+        return fail("fade", RecipeProblem::Other(text));
+    }
+    mask.fade.map_or(Ok(()), |fade| positive("fade", fade))
 }
 
 fn target(target: &Target) -> Check {
@@ -232,6 +260,10 @@ fn all_positive(key: &str, values: &[f64]) -> Check {
 fn not_negative(key: &str, value: f64) -> Check {
     finite(key, value)?;
     if value >= 0.0 { Ok(()) } else { fail(key, RecipeProblem::Negative(value)) }
+}
+
+fn at_most(key: &str, value: f64, most: f64) -> Check {
+    if value <= most { Ok(()) } else { fail(key, RecipeProblem::AboveMost { found: value, most }) }
 }
 
 fn at_least(key: &str, found: u64, least: u64) -> Check {

@@ -1,0 +1,58 @@
+//! The mask of a recipe, put on its strokes.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use isochore_field as field;
+use isochore_mesh::TriMesh;
+
+use crate::{
+    recipe::{Mask, Recipe, RecipeError, RecipeProblem, VertexWeights},
+    replay::ReplayError,
+};
+
+/// The strokes of `recipe`, whose target is `target`, held back by its mask.
+pub(super) fn masked(
+    strokes: Vec<field::Stroke>,
+    recipe: &Recipe,
+    target: &TriMesh,
+) -> Result<Vec<field::Stroke>, ReplayError> {
+    let mask = Arc::new(mask(&recipe.mask, target)?);
+    let bounds = target.bounds();
+    let masked = |(index, stroke): (usize, &field::Stroke)| {
+        let stroke = stroke.masked(&mask, bounds, recipe.integrate.step);
+        stroke.map_err(|source| ReplayError::Stroke { index, source })
+    };
+    strokes.iter().enumerate().map(masked).collect()
+}
+
+fn mask(mask: &Mask, target: &TriMesh) -> Result<field::Mask, RecipeError> {
+    let wrong =
+        |key: String| move |error: field::MaskError| RecipeError::new(&key, RecipeProblem::Other(error.to_string()));
+    let pins = mask.pins.iter().enumerate().map(|(index, pin)| {
+        field::Pin::new(DVec3::from_array(pin.center), pin.radius, pin.support)
+            .map_err(wrong(format!("mask.pins.{index}")))
+    });
+    let mirrors = mask.mirror.iter().enumerate().map(|(index, plane)| {
+        let [point, normal] = [plane.point, plane.normal].map(DVec3::from_array);
+        field::MirrorPlane::new(point, normal).map_err(wrong(format!("mask.mirror.{index}")))
+    });
+    let (pins, mirrors) = (pins.collect::<Result<_, _>>()?, mirrors.collect::<Result<_, _>>()?);
+    let vertices = match &mask.vertices {
+        None => None,
+        Some(VertexWeights::Values(weights)) => {
+            let vertices = field::VertexMask::new(target, weights, mask.fade);
+            Some(vertices.map_err(|error| match error {
+                field::MaskError::Fade(_) | field::MaskError::NoEdges | field::MaskError::TooManySamples { .. } => {
+                    wrong("mask.fade".to_owned())(error)
+                }
+                error => wrong("mask.vertices".to_owned())(error),
+            })?)
+        }
+        Some(VertexWeights::File(name)) => {
+            let text = format!("the file `{name}` was not loaded; put its numbers in its place");
+            return Err(RecipeError::new("mask.vertices", RecipeProblem::Other(text)));
+        }
+    };
+    field::Mask::new(pins, vertices, mirrors).map_err(wrong("mask.mirror".to_owned()))
+}
