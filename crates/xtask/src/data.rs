@@ -5,6 +5,7 @@ mod coin;
 mod disc;
 mod figure;
 mod flips;
+mod foot;
 mod hand;
 mod hare;
 mod planet;
@@ -53,7 +54,7 @@ const fn bounds(min: [f64; 3], max: [f64; 3]) -> Aabb {
 const CHESS: Aabb = bounds([-0.7, -0.7, -0.05], [0.9, 0.7, 2.1]);
 
 /// All meshes. Cells are chosen for about 12,000 triangles, which keeps each file below 600 kB.
-const MODELS: [Model; 12] = [
+const MODELS: [Model; 13] = [
     Model {
         name: "planet",
         shows: "A planet of radius one with continents and craters",
@@ -100,6 +101,16 @@ const MODELS: [Model; 12] = [
             distance: hand::hand,
             bounds: bounds([-1.1, -1.1, -0.4], [0.8, 1.6, 0.4]),
             cell: 0.035,
+        },
+    },
+    Model {
+        name: "foot",
+        shows: "A right foot with a piece of its leg; the sole faces −z",
+        source: Source::Solid {
+            distance: foot::foot,
+            // The sole lies halfway between planes of the grid, where cells are never ambiguous.
+            bounds: bounds([-0.7, -1.3, -0.025], [0.75, 1.25, 0.9]),
+            cell: 0.03,
         },
     },
     Model {

@@ -23,7 +23,7 @@ struct Figure {
 }
 
 /// The chapters on deformation.
-const DEFORMATIONS: [Figure; 11] = [
+const DEFORMATIONS: [Figure; 12] = [
     Figure {
         number: "11.2",
         shows: "Field of a ball on a section: red inside, blue outside, green the ball's motion",
@@ -35,6 +35,12 @@ const DEFORMATIONS: [Figure; 11] = [
         shows: "A shape, the reach of its field, and an offset surface within, cut open",
         recipes: &[],
         drawings: &["shells_knight"],
+    },
+    Figure {
+        number: "11.8",
+        shows: "A foot and a coin are stamped, with all their relief",
+        recipes: &["foot", "coin"],
+        drawings: &[],
     },
     Figure {
         number: "12.1",
@@ -69,7 +75,12 @@ const DEFORMATIONS: [Figure; 11] = [
         recipes: &["taichi"],
         drawings: &[],
     },
-    Figure { number: "12.12", shows: "A hand leaves its print on a planet", recipes: &["hand"], drawings: &[] },
+    Figure {
+        number: "12.12",
+        shows: "A hand leaves its print on a planet: by its field, and stamped",
+        recipes: &["hand", "handprint"],
+        drawings: &[],
+    },
 ];
 
 /// The chapters on frames; the numbers of the figures that they follow are in the programs.
