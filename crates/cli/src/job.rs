@@ -43,7 +43,21 @@ impl Job {
     /// Reads the recipe at `path` and lets `settings` win over it.
     pub(crate) fn read(path: &Path, settings: &[String]) -> Result<Self, CommandError> {
         let text = fs::read(path).map_err(|error| CommandError::cannot("read", path, &error))?;
-        Self::parse(path, text, settings)
+        let mut job = Self::parse(path, text, settings)?;
+        job.read_curves()?;
+        Ok(job)
+    }
+
+    /// Puts the points of the curve files that the recipe names into it.
+    fn read_curves(&mut self) -> Result<(), CommandError> {
+        let names: Vec<String> = self.recipe.curve_names().into_iter().map(str::to_owned).collect();
+        for name in names {
+            // Files of spines may have tangents, which a spline makes itself.
+            let table = CsvTable::read(&beside(&self.path, &name), &[3, 6])?;
+            let points: Vec<[f64; 3]> = table.rows.iter().map(|row| [row[0], row[1], row[2]]).collect();
+            self.recipe.inline_curve(&name, &points);
+        }
+        Ok(())
     }
 
     /// The same with the recipe's text at hand.

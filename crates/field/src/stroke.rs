@@ -18,7 +18,7 @@ pub use movement::Move;
 pub use stamp::Stamp;
 pub use twist::Twist;
 
-use crate::{Mask, swirl_field::SwirlField};
+use crate::{Mask, RingError, StripError, swirl_field::SwirlField};
 
 /// One motion that deforms what it passes through.
 #[derive(Debug, Clone)]
@@ -149,4 +149,10 @@ pub enum StrokeError {
     /// A number is infinite or not a number.
     #[error("{0} must be finite")]
     NotFinite(&'static str),
+    /// The stroke's strip cannot be.
+    #[error(transparent)]
+    Strip(#[from] StripError),
+    /// The stroke's ring cannot be.
+    #[error(transparent)]
+    Ring(#[from] RingError),
 }

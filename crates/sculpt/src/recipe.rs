@@ -3,7 +3,9 @@
 mod deserialize;
 mod error;
 mod mask;
+mod ring;
 mod shape;
+mod strip;
 mod stroke;
 mod tagged;
 mod tree;
@@ -16,9 +18,11 @@ use serde::{Deserialize, Serialize};
 
 pub use error::{Location, RecipeError, RecipeProblem};
 pub use mask::{Mask, MirrorPlane, Pin, VertexWeights};
+pub use ring::Ring;
 pub use shape::{
     BoxMesh, Capsule, Ellipsoid, Icosphere, MeshTool, RoundedBox, Sphere, SphereMesh, TargetShape, ToolShape, Torus,
 };
+pub use strip::{Radius, SpinePoints, Strip, StripMode};
 pub use stroke::{Bend, Key, Move, Stamp, Stroke, Twist};
 pub use tree::Override;
 
@@ -282,6 +286,25 @@ impl Recipe {
         names.sort_unstable();
         names.dedup();
         names
+    }
+}
+
+impl Recipe {
+    /// The curve files that its strokes name, each once, in order of name.
+    pub fn curve_names(&self) -> Vec<&str> {
+        let spines = self.strokes.iter().flat_map(Stroke::spines);
+        let mut names: Vec<&str> = spines.filter_map(SpinePoints::file).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// Puts the points of the curve file `name` wherever it is named.
+    pub fn inline_curve(&mut self, name: &str, points: &[[f64; 3]]) {
+        let spines = self.strokes.iter_mut().flat_map(Stroke::spines_mut);
+        for spine in spines.filter(|spine| spine.file() == Some(name)) {
+            *spine = SpinePoints::Points(points.to_vec());
+        }
     }
 }
 

@@ -32,7 +32,8 @@ pub struct PointReplay {
     pub warnings: Vec<String>,
 }
 
-/// Deforms the target of `recipe`, whose mesh files are in `meshes` by [their names](Recipe::mesh_names).
+/// Deforms the target of `recipe`, whose mesh files are in `meshes` by [their names](Recipe::mesh_names), and whose curve files
+/// have been [put in](Recipe::inline_curve).
 ///
 /// # Errors
 /// [`ReplayError`], naming the key of the recipe that cannot be followed.
@@ -85,6 +86,12 @@ pub enum ReplayError {
         /// Its name in the recipe.
         name: String,
     },
+    /// A curve that the recipe names was not [put in](Recipe::inline_curve).
+    #[error("the curve `{name}` was not loaded")]
+    MissingCurve {
+        /// Its name in the recipe.
+        name: String,
+    },
     /// The distance to a tool's mesh cannot be sampled.
     #[error("tools.{name}.shape: {source}")]
     DistanceField {
@@ -134,7 +141,7 @@ impl ReplayError {
             Self::Tool { name, .. } => Some(format!("tools.{name}")),
             Self::Stroke { index, .. } | Self::Stamp { index, .. } => Some(format!("stroke.{index}")),
             Self::Deform(_) => Some("target".to_owned()),
-            Self::MissingMesh { .. } | Self::Cancelled(_) => None,
+            Self::MissingMesh { .. } | Self::MissingCurve { .. } | Self::Cancelled(_) => None,
         }
     }
 }

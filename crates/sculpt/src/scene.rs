@@ -1,6 +1,7 @@
 //! The objects that a recipe's plain data describe.
 
 mod mask;
+mod strip;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -106,6 +107,9 @@ struct Workshop<'a> {
 
 impl Workshop<'_> {
     fn strokes(&mut self) -> Result<Vec<field::Stroke>, ReplayError> {
+        if let Some(name) = self.recipe.curve_names().first() {
+            return Err(ReplayError::MissingCurve { name: (*name).to_owned() });
+        }
         let mut tools = BTreeMap::new();
         for name in used_tools(self.recipe) {
             tools.insert(name, Arc::new(self.tool(name, &self.recipe.tools[name])?));
@@ -140,20 +144,23 @@ impl Workshop<'_> {
                 let step = self.recipe.integrate.step;
                 field::Stamp::new(tool, keys, step, stamp.relief).map(field::Stroke::Stamp)
             }
+            Stroke::Strip(strip) => {
+                strip::strip(strip, tools).map_err(field::StrokeError::from).and_then(|strip| self.field_stroke(strip))
+            }
+            Stroke::Ring(ring) => {
+                strip::ring(ring).map_err(field::StrokeError::from).and_then(|ring| self.field_stroke(ring))
+            }
         };
         stroke.map_err(|source| ReplayError::Stroke { index, source })
     }
 
+    fn field_stroke(&self, field: impl field::MovingField + 'static) -> Result<field::Stroke, field::StrokeError> {
+        field::FieldStroke::new(vec![Arc::new(field)], self.recipe.integrate.step).map(field::Stroke::Field)
+    }
+
     fn tool(&mut self, name: &str, tool: &Tool) -> Result<field::Tool, ReplayError> {
         let distance = self.distance(name, tool)?;
-        let profile = match tool.profile {
-            Profile::Quintic => field::Profile::Quintic,
-            Profile::Septic => field::Profile::Septic,
-            Profile::Quartic => field::Profile::Quartic,
-            Profile::Contact => field::Profile::Contact,
-            Profile::Thesis => field::Profile::Thesis,
-        };
-        field::Tool::new(distance, tool.support, profile)
+        field::Tool::new(distance, tool.support, profile(tool.profile))
             .map_err(|source| ReplayError::Tool { name: name.to_owned(), source })
     }
 
@@ -260,6 +267,16 @@ fn transformed(mesh: &TriMesh, transform: &Transform) -> TriMesh {
     mesh.transformed(transform.scale, rotation(transform.rotate), DVec3::from_array(transform.translate))
 }
 
+fn profile(profile: Profile) -> field::Profile {
+    match profile {
+        Profile::Quintic => field::Profile::Quintic,
+        Profile::Septic => field::Profile::Septic,
+        Profile::Quartic => field::Profile::Quartic,
+        Profile::Contact => field::Profile::Contact,
+        Profile::Thesis => field::Profile::Thesis,
+    }
+}
+
 fn pose(key: &Key) -> field::Pose {
     field::Pose { rotation: rotation(key.rotate), translation: DVec3::from_array(key.at) }
 }
@@ -277,7 +294,8 @@ pub(crate) fn used_tools(recipe: &Recipe) -> BTreeSet<&str> {
     let tools = recipe.strokes.iter().filter_map(|stroke| match stroke {
         Stroke::Move(motion) => Some(motion.tool.as_str()),
         Stroke::Stamp(stamp) => Some(stamp.tool.as_str()),
-        Stroke::Twist(_) | Stroke::Bend(_) => None,
+        Stroke::Strip(strip) => strip.tool.as_deref(),
+        Stroke::Twist(_) | Stroke::Bend(_) | Stroke::Ring(_) => None,
     });
     tools.collect()
 }

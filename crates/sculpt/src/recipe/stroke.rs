@@ -3,7 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::tagged::tagged;
+use super::{
+    ring::Ring,
+    strip::{SpinePoints, Strip},
+    tagged::tagged,
+};
 
 /// One deformation. Strokes act one after the other.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -17,9 +21,13 @@ pub enum Stroke {
     Bend(Bend),
     /// A tool presses its relief into the surface, and what it displaces is raised around it.
     Stamp(Stamp),
+    /// A solid about a spine carries the material inside it, along the spine or across it.
+    Strip(Strip),
+    /// A ring carries the material inside it along its axis.
+    Ring(Ring),
 }
 
-tagged!(Stroke { "move" => Move(Move), "twist" => Twist(Twist), "bend" => Bend(Bend), "stamp" => Stamp(Stamp) });
+tagged!(Stroke { "move" => Move(Move), "twist" => Twist(Twist), "bend" => Bend(Bend), "stamp" => Stamp(Stamp), "strip" => Strip(Strip), "ring" => Ring(Ring) });
 
 impl Stroke {
     /// The name that recipes and reports use for this kind of stroke.
@@ -29,7 +37,22 @@ impl Stroke {
             Self::Twist(_) => "twist",
             Self::Bend(_) => "bend",
             Self::Stamp(_) => "stamp",
+            Self::Strip(_) => "strip",
+            Self::Ring(_) => "ring",
         }
+    }
+}
+
+impl Stroke {
+    /// The spines that it follows.
+    pub(super) fn spines(&self) -> impl Iterator<Item = &SpinePoints> {
+        let strip = if let Self::Strip(strip) = self { Some(strip) } else { None };
+        strip.into_iter().flat_map(|strip| [Some(&strip.spine), strip.spine_end.as_ref()]).flatten()
+    }
+
+    pub(super) fn spines_mut(&mut self) -> impl Iterator<Item = &mut SpinePoints> {
+        let strip = if let Self::Strip(strip) = self { Some(strip) } else { None };
+        strip.into_iter().flat_map(|strip| [Some(&mut strip.spine), strip.spine_end.as_mut()]).flatten()
     }
 }
 

@@ -25,7 +25,7 @@ const MAX_RESOLUTION: u64 = 1024;
 /// smaller, and rounding in the angle decides which way the tool turns.
 const HALF_TURN_TOLERANCE: f64 = 1e-9;
 
-type Check = Result<(), RecipeError>;
+pub(super) type Check = Result<(), RecipeError>;
 
 impl Recipe {
     /// Checks everything that can be checked without the meshes.
@@ -76,6 +76,11 @@ impl Recipe {
                 keys(&stamp.keys)?;
                 stamp.relief.map_or(Ok(()), |length| positive("relief", length))
             }
+            Stroke::Strip(strip) => {
+                strip.tool.as_ref().map_or(Ok(()), |name| self.tool(name))?;
+                super::strip::validate(strip)
+            }
+            Stroke::Ring(ring) => super::ring::validate(ring),
         }
     }
 
@@ -231,7 +236,7 @@ fn rotation(key: &str, rotate: &[f64; 4]) -> Check {
     finite(key, degrees)
 }
 
-fn direction(key: &str, axis: &[f64; 3]) -> Check {
+pub(super) fn direction(key: &str, axis: &[f64; 3]) -> Check {
     all_finite(key, axis)?;
     // The same test as the one that later makes a unit vector of it, so that no axis passes here and fails there.
     match DVec3::from_array(*axis).try_normalize() {
@@ -240,15 +245,15 @@ fn direction(key: &str, axis: &[f64; 3]) -> Check {
     }
 }
 
-fn finite(key: &str, value: f64) -> Check {
+pub(super) fn finite(key: &str, value: f64) -> Check {
     if value.is_finite() { Ok(()) } else { fail(key, RecipeProblem::NotFinite(value)) }
 }
 
-fn all_finite(key: &str, values: &[f64]) -> Check {
+pub(super) fn all_finite(key: &str, values: &[f64]) -> Check {
     values.iter().try_for_each(|&value| finite(key, value))
 }
 
-fn positive(key: &str, value: f64) -> Check {
+pub(super) fn positive(key: &str, value: f64) -> Check {
     finite(key, value)?;
     if value > 0.0 { Ok(()) } else { fail(key, RecipeProblem::NotPositive(value)) }
 }
@@ -274,6 +279,6 @@ fn all_at_least(key: &str, found: &[u32], least: &[u64]) -> Check {
     found.iter().zip(least).try_for_each(|(&found, &least)| at_least(key, found.into(), least))
 }
 
-fn fail(key: &str, problem: RecipeProblem) -> Check {
+pub(super) fn fail(key: &str, problem: RecipeProblem) -> Check {
     Err(RecipeError::new(key, problem))
 }
