@@ -43,21 +43,7 @@ impl Job {
     /// Reads the recipe at `path` and lets `settings` win over it.
     pub(crate) fn read(path: &Path, settings: &[String]) -> Result<Self, CommandError> {
         let text = fs::read(path).map_err(|error| CommandError::cannot("read", path, &error))?;
-        let mut job = Self::parse(path, text, settings)?;
-        job.read_curves()?;
-        Ok(job)
-    }
-
-    /// Puts the points of the curve files that the recipe names into it.
-    fn read_curves(&mut self) -> Result<(), CommandError> {
-        let names: Vec<String> = self.recipe.curve_names().into_iter().map(str::to_owned).collect();
-        for name in names {
-            // Files of spines may have tangents, which a spline makes itself.
-            let table = CsvTable::read(&beside(&self.path, &name), &[3, 6])?;
-            let points: Vec<[f64; 3]> = table.rows.iter().map(|row| [row[0], row[1], row[2]]).collect();
-            self.recipe.inline_curve(&name, &points);
-        }
-        Ok(())
+        Self::parse(path, text, settings)
     }
 
     /// The same with the recipe's text at hand.
@@ -80,8 +66,10 @@ impl Job {
         Ok(Self { path: path.to_owned(), text: bytes, settings: settings.to_vec(), recipe, outputs })
     }
 
-    /// Reads the meshes that the recipe names, and puts the weights of its mask in the place of their file's name.
+    /// Reads the meshes that the recipe names, and puts the points of its spines and the weights of its mask in the place of
+    /// their files' names.
     pub(crate) fn read_meshes(&mut self) -> Result<Meshes, CommandError> {
+        self.read_curves()?;
         let names = self.recipe.mesh_names().into_iter();
         let meshes: Meshes = names
             .map(|name| Ok((name.to_owned(), io::read(beside(&self.path, name))?)))
@@ -92,6 +80,17 @@ impl Job {
             self.recipe.mask.vertices = Some(VertexWeights::Values(weights));
         }
         Ok(meshes)
+    }
+
+    fn read_curves(&mut self) -> Result<(), CommandError> {
+        let names: Vec<String> = self.recipe.curve_names().into_iter().map(str::to_owned).collect();
+        for name in names {
+            // Files of spines may have tangents, which a spline makes itself.
+            let table = CsvTable::read(&beside(&self.path, &name), &[3, 6])?;
+            let points: Vec<[f64; 3]> = table.rows.iter().map(|row| [row[0], row[1], row[2]]).collect();
+            self.recipe.inline_curve(&name, &points);
+        }
+        Ok(())
     }
 
     /// Deforms the target and puts all outputs in place, together with what `staging` already holds.
