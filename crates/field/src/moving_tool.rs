@@ -9,7 +9,8 @@ use glam::{DMat3, DVec3};
 use isochore_mesh::{Aabb, DistanceBlock, LANES, PointBlock};
 
 use crate::{
-    BodyTwist, Field, FieldBlock, MovingField, Pose, RigidGauge, Tool, pose::Placement, rigid_field::RigidMotion,
+    BodyTwist, Field, FieldBlock, MovingField, Pose, RigidGauge, Tool, gauge::Cubic, pose::Placement,
+    rigid_field::RigidMotion,
 };
 
 /// A tool on its way along one screw, from time 0 to 1.
@@ -32,13 +33,18 @@ impl MovingField for MovingTool {
         let pose = self.start.moved(&self.twist, time);
         let center = self.tool.center();
         let motion = RigidMotion { center, linear: self.twist.velocity(center), angular: self.twist.angular };
-        let corners = self.tool.support_bounds().corners().map(|corner| pose.transform(corner));
+        let support = self.tool.support_bounds();
+        let corners = support.corners().map(|corner| pose.transform(corner));
+        // What has no end has none either when it is turned.
+        let bounds = if support.size().is_finite() { Aabb::of(corners) } else { support };
+        let gauge = self.tool.gauge().map(|gauge| gauge.of(&motion));
         Box::new(PlacedTool {
             tool: Arc::clone(&self.tool),
             pose,
             placement: Placement::from(&pose),
             motion,
-            bounds: Aabb::of(corners),
+            gauge,
+            bounds,
         })
     }
 
@@ -47,7 +53,7 @@ impl MovingField for MovingTool {
     }
 
     fn carrying_speed(&self) -> f64 {
-        self.twist.top_speed(self.tool.distance().bounds())
+        self.twist.top_speed(self.tool.reference())
     }
 
     fn feature_size(&self) -> f64 {
@@ -63,6 +69,8 @@ struct PlacedTool {
     placement: Placement,
     /// In tool coordinates.
     motion: RigidMotion,
+    /// What is added to the potential.
+    gauge: Option<Cubic>,
     bounds: Aabb,
 }
 
@@ -85,7 +93,10 @@ impl Field for PlacedTool {
                 out.set_outside(lane, clearance);
                 continue;
             }
-            let (potential, curl) = self.motion.potential(local.get(lane));
+            let (mut potential, curl) = self.motion.potential(local.get(lane));
+            if let Some(gauge) = &self.gauge {
+                potential += gauge.gradient(local.get(lane) - self.motion.center);
+            }
             let gradient = slope * distance.gradient.get(lane);
             let to_world = |vector: DVec3| self.placement.turn_to_world(vector);
             out.set_product(lane, share, to_world(gradient), to_world(potential), to_world(curl));
@@ -106,7 +117,7 @@ impl Field for PlacedTool {
         let to_world = |vector: DVec3| self.placement.turn_to_world(vector);
         let bounds = self.tool.support_bounds();
         let half = 0.5 * bounds.size();
-        Some(RigidGauge {
+        half.is_finite().then(|| RigidGauge {
             center: self.pose.transform(self.motion.center),
             linear: to_world(self.motion.linear),
             angular: to_world(self.motion.angular),

@@ -105,7 +105,12 @@ impl BodyTwist {
     /// Upper bound on the speed of the points of a box, in local coordinates: a convex function, so the largest of its
     /// corners'.
     pub(crate) fn top_speed(&self, bounds: Aabb) -> f64 {
-        bounds.corners().into_iter().map(|corner| self.velocity(corner).length()).fold(0.0, f64::max)
+        if self.angular == DVec3::ZERO {
+            return self.linear.length();
+        }
+        // A box without end turns infinitely fast.
+        let speed = |corner: DVec3| if corner.is_finite() { self.velocity(corner).length() } else { f64::INFINITY };
+        bounds.corners().into_iter().map(speed).fold(0.0, f64::max)
     }
 }
 

@@ -24,12 +24,17 @@ pub enum Profile {
     Contact,
     /// (1−|u|)²: kinked on the surface, as in the thesis.
     Thesis,
+    /// The square of the quintic; see [`squared`](Self::squared).
+    QuinticSquared,
+    /// The square of the septic.
+    SepticSquared,
+    /// (1 − 4u³ + 3u⁴)²: von Funck's product form written as a curl.
+    QuarticSquared,
+    /// The square of the contact profile.
+    ContactSquared,
     /// (1−u)² with a rigid core.
     #[cfg(test)]
     Quad,
-    /// (1 − 4u³ + 3u⁴)²: von Funck's product form written as a curl.
-    #[cfg(test)]
-    QuarticSquared,
 }
 
 /// Values of a profile and of its derivative with respect to u, for a block of points.
@@ -51,10 +56,24 @@ impl Profile {
             Self::Quartic => "quartic",
             Self::Contact => "contact",
             Self::Thesis => "thesis",
+            Self::QuinticSquared => "quintic²",
+            Self::SepticSquared => "septic²",
+            Self::QuarticSquared => "quartic²",
+            Self::ContactSquared => "contact²",
             #[cfg(test)]
             Self::Quad => "quad",
-            #[cfg(test)]
-            Self::QuarticSquared => "quartic2",
+        }
+    }
+
+    /// g², for a field ∇(g p) × ∇(g q), which is the curl of g² ½ (p ∇q − q ∇p). None where g has a kink, or is a square
+    /// already.
+    pub fn squared(self) -> Option<Self> {
+        match self {
+            Self::Quintic => Some(Self::QuinticSquared),
+            Self::Septic => Some(Self::SepticSquared),
+            Self::Quartic => Some(Self::QuarticSquared),
+            Self::Contact => Some(Self::ContactSquared),
+            _ => None,
         }
     }
 
@@ -66,15 +85,14 @@ impl Profile {
             Self::Quartic => quartic(u),
             Self::Contact => contact(u),
             Self::Thesis => thesis(u),
+            Self::QuinticSquared => square(quintic(u)),
+            Self::SepticSquared => square(septic(u)),
+            Self::QuarticSquared => square(quartic(u)),
+            Self::ContactSquared => square(contact(u)),
             #[cfg(test)]
             Self::Quad => {
                 let rest = 1.0 - u.clamp(0.0, 1.0);
                 (rest * rest, if u > 0.0 { -2.0 * rest } else { 0.0 })
-            }
-            #[cfg(test)]
-            Self::QuarticSquared => {
-                let (value, slope) = quartic(u);
-                (value * value, 2.0 * value * slope)
             }
         }
     }
@@ -88,8 +106,12 @@ impl Profile {
             Self::Quartic => lanes(distances, support, quartic),
             Self::Contact => lanes(distances, support, contact),
             Self::Thesis => lanes(distances, support, thesis),
+            Self::QuinticSquared => lanes(distances, support, |u| square(quintic(u))),
+            Self::SepticSquared => lanes(distances, support, |u| square(septic(u))),
+            Self::QuarticSquared => lanes(distances, support, |u| square(quartic(u))),
+            Self::ContactSquared => lanes(distances, support, |u| square(contact(u))),
             #[cfg(test)]
-            Self::Quad | Self::QuarticSquared => lanes(distances, support, |u| self.evaluate(u)),
+            Self::Quad => lanes(distances, support, |u| self.evaluate(u)),
         }
     }
 }
@@ -101,6 +123,11 @@ fn lanes(distances: &[f64; LANES], support: f64, profile: impl Fn(f64) -> (f64, 
         (block.value[lane], block.slope[lane]) = profile(distances[lane] / support);
     }
     block
+}
+
+#[inline(always)]
+fn square((value, slope): (f64, f64)) -> (f64, f64) {
+    (value * value, 2.0 * value * slope)
 }
 
 #[inline(always)]

@@ -15,13 +15,15 @@
 use glam::DVec3;
 use isochore_mesh::{DistanceBlock, LANES, PointBlock};
 
-use crate::{BodyTwist, Tool, field::curl_of_product};
+use crate::{BodyTwist, Tool, field::curl_of_product, gauge::Cubic};
 
 /// The field of a tool that moves with a twist, in tool coordinates, where it does not change with time.
 #[derive(Debug, Clone, Copy)]
 pub struct RigidField<'a> {
     tool: &'a Tool,
     twist: BodyTwist,
+    /// What is added to the potential.
+    gauge: Option<Cubic>,
 }
 
 /// The field at the points of a block.
@@ -43,7 +45,9 @@ impl VelocityBlock {
 impl<'a> RigidField<'a> {
     /// The field of `tool` as it moves with `twist`.
     pub fn new(tool: &'a Tool, twist: BodyTwist) -> Self {
-        Self { tool, twist }
+        let center = tool.center();
+        let motion = RigidMotion { center, linear: twist.velocity(center), angular: twist.angular };
+        Self { tool, twist, gauge: tool.gauge().map(|gauge| gauge.of(&motion)) }
     }
 
     /// The tool that moves.
@@ -66,6 +70,13 @@ impl<'a> RigidField<'a> {
             let gradient = profile.slope[lane] / support * distance.gradient.get(lane);
             // V − (v + ω×r) = (g − 1)(v + ω×r) + (g′/R) n × A
             out.relative.set(lane, curl_of_product(profile.value[lane] - 1.0, gradient, potential, curl));
+        }
+        if let Some(gauge) = &self.gauge {
+            for lane in 0..LANES {
+                let gradient = profile.slope[lane] / support * distance.gradient.get(lane);
+                let added = gradient.cross(gauge.gradient(points.get(lane) - motion.center));
+                out.relative.set(lane, out.relative.get(lane) + added);
+            }
         }
         out.distance = distance.value;
         for lane in 0..LANES {
@@ -102,6 +113,11 @@ impl RigidMotion {
         let r = point - self.center;
         let turn = self.angular.cross(r);
         ((0.5 * self.linear + turn / 3.0).cross(r), self.linear + turn)
+    }
+
+    /// The velocity of `point`, v + ω×r.
+    pub(crate) fn velocity(&self, point: DVec3) -> DVec3 {
+        self.linear + self.angular.cross(point - self.center)
     }
 }
 

@@ -44,7 +44,7 @@ pub use measure::{Components, EdgeLengths, signed_volume};
 pub use mesh_distance::MeshDistance;
 pub use monitor::{Cancelled, Monitor, Silent};
 pub use self_intersection::{SelfIntersectionError, SelfIntersections};
-pub use shapes::{Capsule, Ellipsoid, RoundedBox, ShapeError, Sphere, Torus};
+pub use shapes::{Capsule, Ellipsoid, HalfSpace, RoundedBox, ShapeError, Sphere, Torus};
 pub use topology::Topology;
 pub use tri_mesh::{CornerAttributes, SubTriangle, Subdivision, TriMesh, VertexAttributes};
 pub use winding_number::WindingNumber;

@@ -5,6 +5,7 @@
 
 mod capsule;
 mod ellipsoid;
+mod half_space;
 mod rounded_box;
 mod sphere;
 mod torus;
@@ -14,6 +15,7 @@ mod tests;
 
 pub use capsule::Capsule;
 pub use ellipsoid::Ellipsoid;
+pub use half_space::HalfSpace;
 pub use rounded_box::RoundedBox;
 pub use sphere::Sphere;
 pub use torus::Torus;
@@ -38,6 +40,22 @@ pub enum ShapeError {
         rounding: f64,
         /// The smallest half extent, model units.
         limit: f64,
+    },
+    /// A direction of length zero, or of no length at all.
+    #[error("the {what} of a {shape} must have a direction")]
+    NoDirection {
+        /// Name of the shape.
+        shape: &'static str,
+        /// Which vector.
+        what: &'static str,
+    },
+    /// A coordinate is infinite or not a number.
+    #[error("the {what} of a {shape} must be finite")]
+    NotFinite {
+        /// Name of the shape.
+        shape: &'static str,
+        /// Which point.
+        what: &'static str,
     },
     /// A torus whose tube reaches its axis would cross itself.
     #[error("the minor radius {minor} of a torus must be smaller than its major radius {major}")]

@@ -3,6 +3,8 @@
 mod deserialize;
 mod error;
 mod mask;
+pub(crate) mod pose;
+mod region;
 mod ring;
 mod shape;
 mod strip;
@@ -18,6 +20,10 @@ use serde::{Deserialize, Serialize};
 
 pub use error::{Location, RecipeError, RecipeProblem};
 pub use mask::{Mask, MirrorPlane, Pin, VertexWeights};
+pub use pose::{Bone, BoneKey, Pose};
+pub use region::{
+    CapsuleRegion, HalfSpaceRegion, InnerRegion, Region, RegionMotion, RegionTurn, SphereRegion, ToolRegion,
+};
 pub use ring::Ring;
 pub use shape::{
     BoxMesh, Capsule, Ellipsoid, Icosphere, MeshTool, RoundedBox, Sphere, SphereMesh, TargetShape, ToolShape, Torus,
@@ -111,6 +117,11 @@ pub struct Tool {
     /// How the field fades.
     #[serde(default)]
     pub profile: Profile,
+    /// How much of the free-form gauge is added to the vector potential, from 0 to 1. More makes the flow around an elongated tool
+    /// slower and its way shorter, but its grooves sharper, which takes more triangles.
+    #[serde(default, skip_serializing_if = "is_default")]
+    #[schemars(range(min = 0, max = 1))]
+    pub free_form: f64,
 }
 
 /// How a tool's field falls from one on the surface to zero where the support ends.

@@ -43,7 +43,8 @@ pub fn replay(recipe: &Recipe, meshes: &Meshes, monitor: &dyn Monitor) -> Result
     Ok(Replay { scene, deformed })
 }
 
-/// Carries `points`, in world coordinates, along the strokes of `recipe`. Its target is looked at for its mask alone.
+/// Carries `points`, in world coordinates, along the strokes of `recipe`. Its target is looked at for its mask, and where it is
+/// there, for the bounds by which a half-space that turns measures its time step; else those of the points do.
 ///
 /// A point set has no surface: a stamp is refused. It has no volume: the lock is left out, so that points agree with the vertices of a mesh before its lock.
 ///
@@ -58,7 +59,7 @@ pub fn replay_points(
     if let Some(index) = recipe.strokes.iter().position(|stroke| matches!(stroke, Stroke::Stamp(_))) {
         return Err(stamp_on_points(index).into());
     }
-    let (strokes, mut warnings) = Scene::strokes(recipe, meshes, monitor)?;
+    let (strokes, mut warnings) = Scene::strokes(recipe, meshes, points, monitor)?;
     if recipe.volume.lock {
         warnings.push("points enclose no volume: the volume lock was left out".to_owned());
     }

@@ -1,6 +1,8 @@
 //! The objects that a recipe's plain data describe.
 
 mod mask;
+mod pose;
+mod region;
 mod strip;
 
 use std::{
@@ -12,13 +14,14 @@ use std::{
 use glam::{DQuat, DVec3};
 use isochore_field as field;
 use isochore_mesh::{
-    self as mesh, ClosedMesh, Distance, DistanceField, DistanceFieldError, DistanceFieldOptions, Monitor, Padding,
-    TriMesh, primitives,
+    self as mesh, Aabb, ClosedMesh, Distance, DistanceField, DistanceFieldError, DistanceFieldOptions, Monitor,
+    Padding, TriMesh, primitives,
 };
 
 use crate::{
     recipe::{
-        Key, Mask, Profile, Recipe, RecipeError, RecipeProblem, Stroke, Target, TargetShape, Tool, ToolShape, Transform,
+        InnerRegion, Key, Mask, Profile, Recipe, RecipeError, RecipeProblem, Stroke, Target, TargetShape, Tool,
+        ToolShape, Transform,
     },
     replay::{Meshes, ReplayError},
 };
@@ -56,7 +59,7 @@ impl Scene {
                 return Err(RecipeError::new("promise.volume", RecipeProblem::Other(text)).into());
             }
         }
-        let mut workshop = Workshop { recipe, meshes, monitor, warnings: Vec::new() };
+        let mut workshop = Workshop { recipe, meshes, monitor, bounds: target.bounds(), warnings: Vec::new() };
         let start = Instant::now();
         let mut strokes = workshop.strokes()?;
         if recipe.mask != Mask::default() {
@@ -77,7 +80,7 @@ impl Scene {
         })
     }
 
-    /// Makes the strokes of `recipe` alone, for points that are no mesh, and what the user should know about them.
+    /// Makes the strokes of `recipe` alone, for `points` that are no mesh, and what the user should know about them.
     ///
     /// A mask belongs to the target, so with one the target's mesh must be there too.
     ///
@@ -86,10 +89,14 @@ impl Scene {
     pub fn strokes(
         recipe: &Recipe,
         meshes: &Meshes,
+        points: &[DVec3],
         monitor: &dyn Monitor,
     ) -> Result<(Vec<field::Stroke>, Vec<String>), ReplayError> {
         recipe.validate()?;
-        let mut workshop = Workshop { recipe, meshes, monitor, warnings: Vec::new() };
+        // With the bounds of the mesh, points take the very steps of its vertices.
+        let bounds =
+            target(&recipe.target, meshes).map_or_else(|_| Aabb::of(points.iter().copied()), |mesh| mesh.bounds());
+        let mut workshop = Workshop { recipe, meshes, monitor, bounds, warnings: Vec::new() };
         let mut strokes = workshop.strokes()?;
         if recipe.mask != Mask::default() {
             strokes = mask::masked(strokes, recipe, &target(&recipe.target, meshes)?)?;
@@ -102,6 +109,8 @@ struct Workshop<'a> {
     recipe: &'a Recipe,
     meshes: &'a Meshes,
     monitor: &'a dyn Monitor,
+    /// Box that holds what is deformed.
+    bounds: Aabb,
     warnings: Vec<String>,
 }
 
@@ -150,6 +159,11 @@ impl Workshop<'_> {
             Stroke::Ring(ring) => {
                 strip::ring(ring).map_err(field::StrokeError::from).and_then(|ring| self.field_stroke(ring))
             }
+            Stroke::Region(region) => region::stroke(region, tools, self.recipe.integrate.step, self.bounds)
+                .map_err(|error| error.inside(&index.to_string()).inside("stroke"))?,
+            Stroke::Pose(pose) => pose::stroke(pose, tools, self.recipe.integrate.step).map_err(|error| {
+                RecipeError::new(&format!("stroke.{index}"), RecipeProblem::Other(error.to_string()))
+            })?,
         };
         stroke.map_err(|source| ReplayError::Stroke { index, source })
     }
@@ -161,6 +175,7 @@ impl Workshop<'_> {
     fn tool(&mut self, name: &str, tool: &Tool) -> Result<field::Tool, ReplayError> {
         let distance = self.distance(name, tool)?;
         field::Tool::new(distance, tool.support, profile(tool.profile))
+            .and_then(|made| made.with_free_form(tool.free_form))
             .map_err(|source| ReplayError::Tool { name: name.to_owned(), source })
     }
 
@@ -168,11 +183,40 @@ impl Workshop<'_> {
         match &tool.shape {
             ToolShape::Mesh(shape) => {
                 let placed = transformed(find(self.meshes, &shape.mesh)?, &shape.transform);
-                Ok(Arc::new(self.distance_field(name, &placed, shape.resolution, tool.support)?))
+                let reach = self.reach(name, tool)?;
+                Ok(Arc::new(self.distance_field(name, &placed, shape.resolution, tool.support, reach)?))
             }
             shape => analytic_distance(shape)
                 .map_err(|problem| RecipeError::new(&format!("tools.{name}.shape"), problem).into()),
         }
+    }
+
+    /// How far around the shape of a tool its distance must be known: to the end of the support, and as a bone farther.
+    fn reach(&self, name: &str, tool: &Tool) -> Result<f64, ReplayError> {
+        let mut reach = tool.support;
+        for stroke in &self.recipe.strokes {
+            if let Stroke::Region(region) = stroke
+                && matches!(&region.inner, InnerRegion::Tool(inner) if inner.tool == name)
+            {
+                reach = reach.max(region.outer_distance);
+            }
+            if let Stroke::Pose(pose) = stroke
+                && pose.bones.iter().any(|bone| bone.tool == name)
+            {
+                let extent = |name: &str| self.extent(&self.recipe.tools[name]);
+                reach = reach.max(pose::least_reach(pose, extent)?);
+            }
+        }
+        Ok(reach)
+    }
+
+    /// Bounds of a tool's shape, in tool coordinates, and the support.
+    fn extent(&self, tool: &Tool) -> Result<(Aabb, f64), ReplayError> {
+        let bounds = match &tool.shape {
+            ToolShape::Mesh(shape) => transformed(find(self.meshes, &shape.mesh)?, &shape.transform).bounds(),
+            shape => analytic_distance(shape).map_err(|problem| RecipeError::new("tools", problem))?.bounds(),
+        };
+        Ok((bounds, tool.support))
     }
 
     fn distance_field(
@@ -181,6 +225,7 @@ impl Workshop<'_> {
         mesh: &TriMesh,
         resolution: u32,
         support: f64,
+        reach: f64,
     ) -> Result<DistanceField, ReplayError> {
         let least = least_resolution(mesh, support);
         if f64::from(resolution) < least {
@@ -190,7 +235,7 @@ impl Workshop<'_> {
         }
         // A cast to integer saturates; the memory limit sees to the rest.
         let resolution = least.max(resolution.into()) as usize;
-        let options = DistanceFieldOptions { resolution, padding: Padding::Reach(support), ..Default::default() };
+        let options = DistanceFieldOptions { resolution, padding: Padding::Reach(reach), ..Default::default() };
         let field = DistanceField::new(mesh, &options, self.monitor).map_err(|error| match error {
             DistanceFieldError::Cancelled(cancelled) => ReplayError::Cancelled(cancelled),
             source => ReplayError::DistanceField { name: name.to_owned(), source },
@@ -291,11 +336,16 @@ pub(crate) fn rotation(rotate: [f64; 4]) -> DQuat {
 
 /// The tools that strokes name; the others need not even be read.
 pub(crate) fn used_tools(recipe: &Recipe) -> BTreeSet<&str> {
-    let tools = recipe.strokes.iter().filter_map(|stroke| match stroke {
-        Stroke::Move(motion) => Some(motion.tool.as_str()),
-        Stroke::Stamp(stamp) => Some(stamp.tool.as_str()),
-        Stroke::Strip(strip) => strip.tool.as_deref(),
-        Stroke::Twist(_) | Stroke::Bend(_) | Stroke::Ring(_) => None,
+    let tools = recipe.strokes.iter().flat_map(|stroke| match stroke {
+        Stroke::Move(motion) => vec![motion.tool.as_str()],
+        Stroke::Stamp(stamp) => vec![stamp.tool.as_str()],
+        Stroke::Pose(pose) => pose.bones.iter().map(|bone| bone.tool.as_str()).collect(),
+        Stroke::Region(region) => match &region.inner {
+            InnerRegion::Tool(inner) => vec![inner.tool.as_str()],
+            _ => Vec::new(),
+        },
+        Stroke::Strip(strip) => strip.tool.as_deref().into_iter().collect(),
+        Stroke::Twist(_) | Stroke::Bend(_) | Stroke::Ring(_) => Vec::new(),
     });
     tools.collect()
 }

@@ -62,7 +62,7 @@ fn recipe() -> impl Strategy<Value = Recipe> {
             let mut recipe = Recipe::parse("recipe = 1\ntarget = { mesh = \"a\" }", Format::Toml, &[]).unwrap();
             for (tool, profile) in [("a", Profile::Quintic), ("b", Profile::Thesis), ("c", Profile::Contact)] {
                 let shape = ToolShape::Sphere(Sphere { radius });
-                recipe.tools.insert(tool.to_owned(), Tool { shape, support, profile });
+                recipe.tools.insert(tool.to_owned(), Tool { shape, support, profile, free_form: 0.0 });
             }
             recipe.strokes = strokes;
             recipe.target.mesh = Some(name.clone());

@@ -24,7 +24,7 @@ fn report_is_current() {
 fn every_kind_refuses_unknown_keys() {
     let schema = Value::from(isochore_sculpt::schema::recipe());
     let mut kinds = 0;
-    for name in ["Stroke", "TargetShape", "ToolShape"] {
+    for name in ["InnerRegion", "Stroke", "TargetShape", "ToolShape"] {
         for kind in schema["$defs"][name]["oneOf"].as_array().unwrap() {
             assert_eq!(kind["additionalProperties"], false, "{kind}");
             assert!(kind["required"].as_array().unwrap().contains(&"kind".into()), "{kind}");

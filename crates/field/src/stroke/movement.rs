@@ -131,7 +131,7 @@ impl Segment {
         // A pause: the logarithm of a rotation and its inverse would leave a rounding that moves what it should not.
         let rest = BodyTwist { linear: DVec3::ZERO, angular: DVec3::ZERO };
         let twist = if start == end { rest } else { start.twist_to(end).ok_or(StrokeError::HalfTurn { key })? };
-        let travel = twist.top_speed(tool.distance().bounds());
+        let travel = twist.top_speed(tool.reference());
         let count = (travel / (step * tool.feature_size())).ceil().max(1.0);
         if count.is_nan() || count > MAX_STEPS as f64 {
             return Err(StrokeError::TooManySteps { key, steps: count });
@@ -168,7 +168,7 @@ impl Segment {
                     due.push(index as u32);
                 } else if travelers.wake[index] <= step {
                     let local = self.placements[step].to_local(travelers.world[index]);
-                    let sleep = self.resting_steps(bounds.distance(local), local);
+                    let sleep = self.resting_steps(bounds.distance(local), local, 0.0);
                     if sleep > 0 {
                         travelers.wake[index] = step + sleep;
                     } else {
@@ -204,7 +204,7 @@ impl Segment {
         for lane in 0..block.len() {
             if velocity.is_outside[lane] && velocity.distance[lane].is_finite() {
                 let clearance = (velocity.distance[lane] - tool.support()) / tool.distance().lipschitz();
-                sleep[lane] = self.resting_steps(clearance, start.get(lane));
+                sleep[lane] = self.resting_steps(clearance, start.get(lane), 0.0);
             }
         }
         if sleep[..block.len()].iter().all(|&steps| steps > 0) {
@@ -234,18 +234,27 @@ impl Segment {
         4 * block.len() as u64
     }
 
-    /// Number of steps through which a point at rest, now at `local` and at least `clearance` away from the support, is certain
+    /// Number of steps through which a point at rest, or a ball of this radius about it, now at `local` and at least `clearance` away from the support, is certain
     /// to have all four Runge-Kutta stages beyond the support.
     ///
     /// In the world the support comes closer by at most speed × time. The stages follow the point's circle in tool
     /// coordinates along tangents: off by less than (step time)² |ω| |v + ω×y|, where |v + ω×y| does not change along the way.
-    fn resting_steps(&self, clearance: f64, local: DVec3) -> usize {
+    fn resting_steps(&self, clearance: f64, local: DVec3, radius: f64) -> usize {
         let time = self.step_time();
-        let stage_error = time * time * self.twist.angular.length() * self.twist.velocity(local).length();
+        let own_speed = self.own_speed(local, radius);
+        let stage_error = time * time * self.twist.angular.length() * own_speed;
         let slack = SLEEP_SLACK * (local.abs().max_element() + clearance);
-        let steps = (clearance - stage_error - slack) / (self.speed * time);
+        // The support comes no faster than its fastest point, nor than the point itself goes past the tool.
+        let speed = self.speed.min(own_speed);
+        let steps = (clearance - stage_error - slack) / (speed * time);
         // A tool that stands still comes no closer: 0/0 and 1/0 both mean all remaining steps, or none when in reach.
         if steps >= 1.0 { (steps as usize).min(self.steps()) } else { 0 }
+    }
+
+    /// Upper bound on the speed at which what rests in a ball about `local` goes past the tool, on circles whose speed does not
+    /// change. A tool without end has no other bound.
+    fn own_speed(&self, local: DVec3, radius: f64) -> f64 {
+        self.twist.velocity(local).length() + self.twist.angular.length() * radius
     }
 
     fn may_touch(&self, tool: &Tool, center: DVec3, radius: f64) -> bool {
@@ -261,10 +270,10 @@ impl Segment {
                 }
             }
             // Between this step and the next the support comes closer by at most this.
-            if clearance <= self.speed * self.step_time() {
+            if clearance <= self.speed.min(self.own_speed(local, radius)) * self.step_time() {
                 return true;
             }
-            step += self.resting_steps(clearance, local).max(1);
+            step += self.resting_steps(clearance, local, radius).max(1);
         }
         false
     }

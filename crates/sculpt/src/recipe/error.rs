@@ -140,6 +140,16 @@ pub enum RecipeProblem {
         /// All tools of the recipe.
         known: Vec<String>,
     },
+    /// A name that no bone of the stroke has.
+    #[error("there is no bone `{name}`{}", suggestion(.nearest, .known))]
+    UnknownBone {
+        /// The name.
+        name: String,
+        /// The bone whose name is spelled most like it.
+        nearest: Option<String>,
+        /// All bones of the stroke.
+        known: Vec<String>,
+    },
     /// Anything else that a reader of recipes has to say.
     #[error("{0}")]
     Other(String),

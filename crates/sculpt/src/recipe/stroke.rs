@@ -4,6 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
+    pose::Pose,
+    region::Region,
     ring::Ring,
     strip::{SpinePoints, Strip},
     tagged::tagged,
@@ -25,9 +27,13 @@ pub enum Stroke {
     Strip(Strip),
     /// A ring carries the material inside it along its axis.
     Ring(Ring),
+    /// A jointed tool goes through postures.
+    Pose(Pose),
+    /// A region of space moves rigidly, and what surrounds it gives way.
+    Region(Region),
 }
 
-tagged!(Stroke { "move" => Move(Move), "twist" => Twist(Twist), "bend" => Bend(Bend), "stamp" => Stamp(Stamp), "strip" => Strip(Strip), "ring" => Ring(Ring) });
+tagged!(Stroke { "move" => Move(Move), "twist" => Twist(Twist), "bend" => Bend(Bend), "stamp" => Stamp(Stamp), "strip" => Strip(Strip), "ring" => Ring(Ring), "pose" => Pose(Pose), "region" => Region(Region) });
 
 impl Stroke {
     /// The name that recipes and reports use for this kind of stroke.
@@ -39,6 +45,8 @@ impl Stroke {
             Self::Stamp(_) => "stamp",
             Self::Strip(_) => "strip",
             Self::Ring(_) => "ring",
+            Self::Pose(_) => "pose",
+            Self::Region(_) => "region",
         }
     }
 }

@@ -81,11 +81,13 @@ impl Recipe {
                 super::strip::validate(strip)
             }
             Stroke::Ring(ring) => super::ring::validate(ring),
+            Stroke::Pose(pose) => pose.validate(self),
+            Stroke::Region(region) => region.validate(self),
         }
     }
 
     /// Whether the stroke's tool is one of the recipe's.
-    fn tool(&self, name: &str) -> Check {
+    pub(super) fn tool(&self, name: &str) -> Check {
         if self.tools.contains_key(name) {
             return Ok(());
         }
@@ -106,8 +108,7 @@ fn keys(keys: &[Key]) -> Check {
         all_finite(&path("at"), &key.at)?;
         rotation(&path("rotate"), &key.rotate)?;
         let rotation = scene::rotation(key.rotate);
-        // The scalar part of the relative rotation is the cosine of half its angle, and near half a turn its sine is that small.
-        if before.is_some_and(|before| before.dot(rotation).abs() <= 0.5 * HALF_TURN_TOLERANCE) {
+        if before.is_some_and(|before| is_half_turn(before, rotation)) {
             return fail(&path("rotate"), RecipeProblem::HalfTurn);
         }
         before = Some(rotation);
@@ -139,6 +140,12 @@ fn mask(mask: &Mask) -> Check {
         return fail("fade", RecipeProblem::Other(text));
     }
     mask.fade.map_or(Ok(()), |fade| positive("fade", fade))
+}
+
+/// Whether two turns are half a turn apart.
+pub(super) fn is_half_turn(before: DQuat, after: DQuat) -> bool {
+    // The scalar part of the relative rotation is the cosine of half its angle, and near half a turn its sine is that small.
+    before.dot(after).abs() <= 0.5 * HALF_TURN_TOLERANCE
 }
 
 fn target(target: &Target) -> Check {
@@ -180,7 +187,13 @@ fn target_shape(shape: &TargetShape) -> Check {
 
 fn tool(tool: &Tool) -> Check {
     tool_shape(&tool.shape).map_err(|error| error.inside("shape"))?;
-    positive("support", tool.support)
+    positive("support", tool.support)?;
+    not_negative("free_form", tool.free_form)?;
+    if tool.free_form > 1.0 {
+        let text = format!("is {}; give a share from 0 to 1", tool.free_form);
+        return fail("free_form", RecipeProblem::Other(text));
+    }
+    Ok(())
 }
 
 fn tool_shape(shape: &ToolShape) -> Check {
@@ -230,7 +243,7 @@ fn transform(transform: &Transform) -> Check {
     all_finite("translate", &transform.translate)
 }
 
-fn rotation(key: &str, rotate: &[f64; 4]) -> Check {
+pub(super) fn rotation(key: &str, rotate: &[f64; 4]) -> Check {
     let [x, y, z, degrees] = *rotate;
     direction(key, &[x, y, z])?;
     finite(key, degrees)
