@@ -5,6 +5,8 @@
 
 use std::time::Instant;
 
+use cpu_time::ProcessTime;
+
 /// Rounds of every measurement, after one that warms up.
 const ROUNDS: usize = 9;
 
@@ -23,7 +25,19 @@ pub fn interleaved_medians(jobs: &mut [&mut dyn FnMut()]) -> Vec<f64> {
     seconds.iter_mut().map(|seconds| median(seconds)).collect()
 }
 
-fn median(seconds: &mut [f64]) -> f64 {
+/// Seconds that all threads of this process have worked so far. Steadier than the clock on a machine that others use too.
+///
+/// # Panics
+/// If the system does not tell.
+pub fn cpu_seconds() -> f64 {
+    ProcessTime::try_now().expect("the system counts").as_duration().as_secs_f64()
+}
+
+/// The middle one of these numbers.
+///
+/// # Panics
+/// If there are none.
+pub fn median(seconds: &mut [f64]) -> f64 {
     seconds.sort_unstable_by(f64::total_cmp);
     seconds[seconds.len() / 2]
 }

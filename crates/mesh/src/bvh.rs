@@ -7,7 +7,7 @@ mod unit_frame;
 mod tests;
 
 use glam::{DVec3, Vec3A};
-use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::bvh2::Bvh2;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
 
@@ -17,9 +17,6 @@ pub(crate) use unit_frame::UnitFrame;
 
 /// Triangles in a leaf at most: one test of the box for all of them. A kernel for many points amortizes well with 2 to 6.
 const LEAF_TRIANGLES: u32 = 4;
-
-/// Cost of a box test against that of a triangle test, for the decision whether to merge leaves.
-const BOX_COST: f32 = 1.0;
 
 /// Relative slack of pruning. Boxes are rounded outward, so the box distance in exact arithmetic is never too large; computed in
 /// `f64` from coordinates of size at most a few, it is off by less than ten rounding errors, as is the best squared distance it
@@ -91,25 +88,8 @@ impl Bvh {
 
         // The portable builder: the convenience functions around it read the clock, which WebAssembly has not.
         let indices = (0..boxes.len() as u32).collect();
-        let mut tree = PlocBuilder::new().build(PlocSearchDistance::Low, &boxes, indices, SortPrecision::U64, 2);
-        collapse(&mut tree, LEAF_TRIANGLES, BOX_COST);
-        tree.reorder_in_stack_traversal_order();
-
-        let mut order = Vec::with_capacity(triangles.len());
-        let nodes: Vec<_> = (tree.nodes.iter())
-            .map(|node| {
-                let first = if node.is_leaf() {
-                    let first = order.len() as u32;
-                    let held = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-                    order.extend_from_slice(&tree.primitive_indices[held]);
-                    first
-                } else {
-                    node.first_index
-                };
-                let aabb = node.aabb();
-                Node { min: aabb.min.to_array(), max: aabb.max.to_array(), first, count: node.prim_count }
-            })
-            .collect();
+        let tree = PlocBuilder::new().build(PlocSearchDistance::Low, &boxes, indices, SortPrecision::U64, 2);
+        let (nodes, order) = with_larger_leaves(&tree);
         Ok(Self {
             frame,
             depth: depth(&nodes),
@@ -229,6 +209,63 @@ fn outward_box(corners: &[DVec3; 3]) -> obvhs::aabb::Aabb {
     let down = |x: f64| if f64::from(x as f32) > x { (x as f32).next_down() } else { x as f32 };
     let up = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
     obvhs::aabb::Aabb::new(Vec3A::from_array(min.to_array().map(down)), Vec3A::from_array(max.to_array().map(up)))
+}
+
+/// The nodes of a tree with one triangle a leaf, cut where [`LEAF_TRIANGLES`] remain: children behind their parents and beside each
+/// other, and the triangles below any node beside each other in the order that comes with them.
+fn with_larger_leaves(tree: &Bvh2) -> (Vec<Node>, Vec<u32>) {
+    let is_small = |mut below: u32| {
+        // Counts no further than needed.
+        let mut pending = [0; LEAF_TRIANGLES as usize];
+        let (mut waiting, mut leaves) = (0, 0);
+        loop {
+            let node = &tree.nodes[below as usize];
+            if node.is_leaf() {
+                leaves += 1;
+                if waiting == 0 {
+                    return leaves <= LEAF_TRIANGLES as usize;
+                }
+                waiting -= 1;
+                below = pending[waiting];
+            } else {
+                if leaves + waiting + 2 > LEAF_TRIANGLES as usize {
+                    return false;
+                }
+                pending[waiting] = node.first_index + 1;
+                waiting += 1;
+                below = node.first_index;
+            }
+        }
+    };
+    let node = |source: u32, first: u32, count: u32| {
+        let aabb = tree.nodes[source as usize].aabb();
+        Node { min: aabb.min.to_array(), max: aabb.max.to_array(), first, count }
+    };
+    let mut order = Vec::with_capacity(tree.primitive_indices.len());
+    let mut nodes = vec![node(0, 0, 0)];
+    let mut pending = vec![(0, 0)];
+    let mut leaf = Vec::new();
+    while let Some((source, place)) = pending.pop() {
+        if is_small(source) {
+            let first = order.len() as u32;
+            leaf.push(source);
+            while let Some(below) = leaf.pop() {
+                let below = &tree.nodes[below as usize];
+                if below.is_leaf() {
+                    order.push(tree.primitive_indices[below.first_index as usize]);
+                } else {
+                    leaf.extend([below.first_index + 1, below.first_index]);
+                }
+            }
+            nodes[place] = node(source, first, order.len() as u32 - first);
+        } else {
+            let (first, children) = (nodes.len(), tree.nodes[source as usize].first_index);
+            nodes[place].first = first as u32;
+            nodes.extend([node(children, 0, 0), node(children + 1, 0, 0)]);
+            pending.extend([(children + 1, first + 1), (children, first)]);
+        }
+    }
+    (nodes, order)
 }
 
 fn depth(nodes: &[Node]) -> usize {

@@ -159,6 +159,7 @@ impl DistanceField {
         options: &DistanceFieldOptions,
         monitor: &dyn Monitor,
     ) -> Result<Self, DistanceFieldError> {
+        monitor.check("hierarchy", 0.0)?;
         let bvh = Arc::new(Bvh::new(&mesh.positions, &mesh.triangles)?);
         let surface = surface_bounds(mesh);
         let grid = Grid::around(surface, options.resolution, options.padding)?;
@@ -171,8 +172,8 @@ impl DistanceField {
         }
         let open_edges = open_edges(&mesh.triangles, mesh.positions.len());
         let is_closed = open_edges.is_empty();
-        let volume = mesh.volume();
-        if is_closed && volume < 0.0 {
+        let volume = is_closed.then(|| mesh.volume());
+        if let Some(volume) = volume.filter(|&volume| volume < 0.0) {
             return Err(DistanceFieldError::InsideOut { volume });
         }
 
@@ -192,7 +193,7 @@ impl DistanceField {
         };
         monitor.check("spline", 0.0)?;
         let interpolant = Interpolant::new(&grid, &samples);
-        let centroid = surface_centroid(mesh, is_closed);
+        let centroid = surface_centroid(mesh, volume);
         Ok(Self { grid, samples, sample_error, interpolant, surface, centroid, reach, is_closed })
     }
 

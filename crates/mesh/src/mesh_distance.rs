@@ -52,7 +52,8 @@ impl MeshDistance {
             Sides::WindingNumber(WindingNumber::new(bvh.clone()))
         };
         let is_closed = open_edges(&mesh.triangles, mesh.positions.len()).is_empty();
-        Ok(Self { bounds: surface_bounds(mesh), centroid: surface_centroid(mesh, is_closed), bvh, sides })
+        let centroid = surface_centroid(mesh, is_closed.then(|| mesh.volume()));
+        Ok(Self { bounds: surface_bounds(mesh), centroid, bvh, sides })
     }
 
     /// The nearest point of the mesh.
@@ -132,11 +133,11 @@ pub(crate) fn surface_bounds(mesh: &TriMesh) -> Aabb {
     Aabb::of(mesh.triangles.iter().flatten().map(|&vertex| mesh.positions[vertex as usize]))
 }
 
-/// Centroid of the volume inside a closed mesh; of the area, if it is open or encloses nothing.
-pub(crate) fn surface_centroid(mesh: &TriMesh, is_closed: bool) -> DVec3 {
+/// Centroid of the volume inside a closed mesh, given that volume; of the area, if it is open or encloses nothing.
+pub(crate) fn surface_centroid(mesh: &TriMesh, closed_volume: Option<f64>) -> DVec3 {
     let bounds = surface_bounds(mesh);
     let size = bounds.size().max_element();
-    if is_closed && mesh.volume().abs() > LEAST_VOLUME * size * size * size {
+    if closed_volume.is_some_and(|volume| volume.abs() > LEAST_VOLUME * size * size * size) {
         return mesh.volume_centroid();
     }
     // About the center, so that nothing cancels far from the origin.

@@ -33,27 +33,27 @@ impl OrientedBox {
                 Piece::join(&pieces[node.first as usize], &pieces[node.first as usize + 1])
             };
         }
-        pieces.par_iter().map(|piece| Self::around(piece, bvh, largest)).collect()
-    }
-
-    fn around(piece: &Piece, bvh: &Bvh, largest: f64) -> Self {
-        let corners = bvh.corners()[piece.slots.start as usize..piece.slots.end as usize].as_flattened();
-        let normal = piece.normal.try_normalize().unwrap_or(DVec3::X);
-        let tangent = piece.tangent - normal * normal.dot(piece.tangent);
-        let tangent = tangent.try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
-        let axes = DMat3::from_cols(normal, tangent, normal.cross(tangent));
-        let turn = axes.transpose();
-        let (min, max) = corners.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), &corner| {
-            let turned = turn * corner;
-            (min.min(turned), max.max(turned))
-        });
-        let rounding = COORDINATE_ROUNDING * (largest + 1.0);
-        let f = |v: DVec3| v.to_array().map(|x| x as f32);
-        Self {
-            axes: [f(axes.x_axis), f(axes.y_axis), f(axes.z_axis)],
-            middle: f(0.5 * (min + max)),
-            half: f(0.5 * (max - min) + rounding),
+        let mut shells: Vec<Shell> = pieces.par_iter().map(|piece| Shell::around(piece, bvh)).collect();
+        // Boxes of large pieces hold the boxes of the grains in them, which is nearly as tight and far faster.
+        let mut grains: Vec<u32> = (bvh.nodes().iter().zip(&pieces))
+            .filter(|(node, piece)| node.count == 0 && piece.slots.len() > GRAIN)
+            .flat_map(|(node, _)| [node.first, node.first + 1])
+            .filter(|&child| pieces[child as usize].slots.len() <= GRAIN)
+            .collect();
+        grains.sort_unstable_by_key(|&grain| pieces[grain as usize].slots.start);
+        let start = |slot: u32| grains.partition_point(|&grain| pieces[grain as usize].slots.start < slot);
+        let large: Vec<(usize, Shell)> = (pieces.par_iter().enumerate())
+            .filter(|(_, piece)| piece.slots.len() > GRAIN)
+            .map(|(i, piece)| {
+                let grains = &grains[start(piece.slots.start)..start(piece.slots.end)];
+                (i, shells[i].holding(grains.iter().map(|&grain| &shells[grain as usize])))
+            })
+            .collect();
+        for (i, shell) in large {
+            shells[i] = shell;
         }
+        let rounding = COORDINATE_ROUNDING * (largest + 1.0);
+        shells.par_iter().map(|shell| shell.rounded(rounding)).collect()
     }
 
     /// Squared distances to the points.
@@ -72,6 +72,61 @@ impl OrientedBox {
         squared
     }
 }
+
+/// A box in any orientation, in full precision.
+#[derive(Debug, Clone, Copy)]
+struct Shell {
+    axes: DMat3,
+    /// Least and greatest coordinates along the axes.
+    min: DVec3,
+    max: DVec3,
+}
+
+impl Shell {
+    /// Axes across and along the piece; around all its corners, unless these are many.
+    fn around(piece: &Piece, bvh: &Bvh) -> Self {
+        let normal = piece.normal.try_normalize().unwrap_or(DVec3::X);
+        let tangent = piece.tangent - normal * normal.dot(piece.tangent);
+        let tangent = tangent.try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
+        let mut shell = Self {
+            axes: DMat3::from_cols(normal, tangent, normal.cross(tangent)),
+            min: DVec3::INFINITY,
+            max: DVec3::NEG_INFINITY,
+        };
+        if piece.slots.len() <= GRAIN {
+            let turn = shell.axes.transpose();
+            for corner in bvh.corners()[piece.slots.start as usize..piece.slots.end as usize].as_flattened() {
+                let turned = turn * *corner;
+                (shell.min, shell.max) = (shell.min.min(turned), shell.max.max(turned));
+            }
+        }
+        shell
+    }
+
+    /// A box along the same axes around others.
+    fn holding<'a>(&self, others: impl Iterator<Item = &'a Self>) -> Self {
+        let to_axes = self.axes.transpose();
+        others.fold(Self { axes: self.axes, min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }, |shell, other| {
+            let turn = to_axes * other.axes;
+            let middle = turn * (0.5 * (other.min + other.max));
+            let spread = DMat3::from_cols(turn.x_axis.abs(), turn.y_axis.abs(), turn.z_axis.abs());
+            let half = spread * (0.5 * (other.max - other.min));
+            Self { min: shell.min.min(middle - half), max: shell.max.max(middle + half), ..shell }
+        })
+    }
+
+    fn rounded(&self, rounding: f64) -> OrientedBox {
+        let f = |v: DVec3| v.to_array().map(|x| x as f32);
+        OrientedBox {
+            axes: [f(self.axes.x_axis), f(self.axes.y_axis), f(self.axes.z_axis)],
+            middle: f(0.5 * (self.min + self.max)),
+            half: f(0.5 * (self.max - self.min) + rounding),
+        }
+    }
+}
+
+/// Triangles in a grain at most. Larger: slower to prepare. Smaller: looser boxes of large pieces.
+const GRAIN: usize = 64;
 
 /// How a part of the hierarchy lies.
 #[derive(Debug, Clone, Default)]

@@ -1,5 +1,6 @@
 //! Winding numbers of all nodes of a grid, exactly, by counting where its rows cross a closed surface.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicI32, Ordering};
 
 use glam::DVec3;
@@ -18,6 +19,7 @@ use crate::bvh::UnitFrame;
 pub(super) struct RowCrossings {
     /// Coordinates of the nodes along each axis, in the unit frame.
     nodes: [Vec<f64>; 3],
+    nodes_per_length: f64,
     /// What the winding number changes by between each node and the one before it in its row.
     changes: Vec<AtomicI32>,
 }
@@ -34,12 +36,19 @@ impl RowCrossings {
         });
         let mut changes = Vec::with_capacity(grid.len());
         changes.resize_with(grid.len(), AtomicI32::default);
-        Self { nodes, changes }
+        Self { nodes, nodes_per_length: 1.0 / (grid.cell * frame.scale()), changes }
     }
 
     /// Counts the crossings of one triangle. `vertices` tell which corners are shared with other triangles.
     pub(super) fn add(&self, corners: &[DVec3; 3], vertices: &[u32; 3]) {
-        let [x, y, z] = [0, 1, 2].map(|axis| range_between(&self.nodes[axis], corners.map(|corner| corner[axis])));
+        let range = |axis: usize| self.range_between(axis, corners.map(|corner| corner[axis]));
+        // Most triangles of a fine mesh meet no row.
+        let z = range(2);
+        let y = if z.is_empty() { 0..0 } else { range(1) };
+        if y.is_empty() {
+            return;
+        }
+        let x = range(0);
         for k in z {
             for j in y.clone() {
                 let sides = [0, 1, 2].map(|side| {
@@ -93,21 +102,21 @@ impl RowCrossings {
         });
         numbers
     }
-}
 
-/// Numbers of the nodes that lie between the least and the greatest of these coordinates, or on them; ends at the first node behind.
-fn range_between(nodes: &[f64], coordinates: [f64; 3]) -> std::ops::Range<usize> {
-    let [a, b, c] = coordinates;
-    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
-    // Nodes are evenly spaced but for rounding.
-    let step = (nodes[nodes.len() - 1] - nodes[0]) / (nodes.len().max(2) - 1) as f64;
-    let near = |coordinate: f64| (((coordinate - nodes[0]) / step) as usize).min(nodes.len());
-    let mut range = near(min).saturating_sub(1)..(near(max) + 2).min(nodes.len());
-    while range.start < range.end && nodes[range.start] < min {
-        range.start += 1;
+    /// Numbers of the nodes along an axis between the least and the greatest of these coordinates, or on them; where there are none,
+    /// an empty range at the first node behind.
+    fn range_between(&self, axis: usize, [a, b, c]: [f64; 3]) -> Range<usize> {
+        let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+        let nodes = &self.nodes[axis];
+        // Nodes are evenly spaced but for rounding.
+        let near = |coordinate: f64| (((coordinate - nodes[0]) * self.nodes_per_length) as usize).min(nodes.len());
+        let mut range = near(min).saturating_sub(1)..(near(max) + 2).min(nodes.len());
+        while range.start < range.end && nodes[range.start] < min {
+            range.start += 1;
+        }
+        while range.start < range.end && nodes[range.end - 1] > max {
+            range.end -= 1;
+        }
+        range
     }
-    while range.start < range.end && nodes[range.end - 1] > max {
-        range.end -= 1;
-    }
-    range
 }

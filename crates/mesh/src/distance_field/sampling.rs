@@ -17,6 +17,7 @@ use crate::{Aabb, Bvh, Cancelled, Monitor};
 pub(super) fn unsigned(bvh: &Bvh, grid: &Grid, band: f64, monitor: &dyn Monitor) -> Result<(Vec<f32>, f64), Cancelled> {
     let largest = largest_coordinate(bvh, grid);
     let search = PacketSearch::new(bvh, largest);
+    monitor.check("distance", 0.0)?;
     let [nx, ny, nz] = grid.dims;
     let mut samples = vec![0.0; nx * ny * nz];
     let slab = nx * ny * PACKET[2];
