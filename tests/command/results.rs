@@ -165,6 +165,25 @@ fn json_recipes_do_the_same() {
 }
 
 #[test]
+fn spines_come_from_files_too() {
+    let strip = "kind = \"strip\"\nmode = \"along\"\nradius = 0.2\nsupport = 0.3\ndistance = 0.1\n";
+    let recipe = |spine: &str| PRESS.replace("[output]", &format!("[[stroke]]\n{strip}spine = {spine}\n\n[output]"));
+    let folder = Folder::with(&[
+        ("listed.toml", &recipe("[[-1.5, 0, 0.8], [0, 0.1, 0.8], [1.5, 0, 0.8]]")),
+        ("named.toml", &recipe("\"spine.csv\"")),
+        ("spine.csv", "x,y,z\n-1.5,0,0.8\n0,0.1,0.8\n1.5,0,0.8\n"),
+    ]);
+    folder.run(&["run", "listed.toml"]).expect(0);
+    let listed = folder.read("out.ply");
+    folder.run(&["run", "named.toml"]).expect(0);
+    assert_eq!(folder.read("out.ply"), listed);
+    fs::write(folder.path("spine.csv"), "0,0,0\n1,0,nan\n").unwrap();
+    folder.run(&["run", "named.toml"]).expect_error(2, &["spine.csv: row 2, column 3: NaN is not a finite number"]);
+    fs::remove_file(folder.path("spine.csv")).unwrap();
+    folder.run(&["run", "named.toml"]).expect_error(2, &["spine.csv"]);
+}
+
+#[test]
 fn what_is_out_of_reach_keeps_its_bits() {
     let folder = Folder::with(&[
         ("press.toml", PRESS),

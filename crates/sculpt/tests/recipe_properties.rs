@@ -1,9 +1,14 @@
 //! Recipes of any content are written and read back without loss; texts of any content are read without panic.
 
 use isochore_sculpt::recipe::{
-    Bend, Format, Key, Move, Override, Profile, Recipe, Sphere, Stamp, Stroke, Tool, ToolShape, Twist,
+    Bend, Format, Key, Move, Override, Profile, Radius, Recipe, Ring, Sphere, SpinePoints, Stamp, Strip, StripMode,
+    Stroke, Tool, ToolShape, Twist,
 };
-use proptest::{array::uniform3, collection::vec, prelude::*};
+use proptest::{
+    array::{uniform2, uniform3},
+    collection::vec,
+    prelude::*,
+};
 
 const TEXT: &str = r#"recipe = 1
 [target]
@@ -52,7 +57,60 @@ fn stroke() -> impl Strategy<Value = Stroke> {
             let keys = places.into_iter().map(|at| Key { at, rotate: [0.0, 1.0, 1.0, 0.1] }).collect();
             Stroke::Stamp(Stamp { tool, keys, relief })
         }),
+        strip(),
+        (uniform3(number()), length(), length(), length(), number()).prop_map(
+            |(center, major, minor, support, distance)| {
+                let axis = [0.0, 0.0, 1.0];
+                Stroke::Ring(Ring { center, axis, major, minor, support, distance, profile: Profile::Septic })
+            }
+        ),
     ]
+}
+
+fn strip() -> impl Strategy<Value = Stroke> {
+    let spine = || {
+        prop_oneof![
+            "[ -~ä]{1,8}".prop_map(SpinePoints::File),
+            [uniform3(number()), uniform3(number())].prop_map(|points| SpinePoints::Points(points.to_vec())),
+        ]
+    };
+    let shape = prop_oneof![
+        (length(), length()).prop_map(|(radius, support)| (Some(Radius::Constant(radius)), None, None, Some(support))),
+        (vec(length(), 1..4), length()).prop_map(|(radii, support)| (
+            Some(Radius::Varying(radii)),
+            None,
+            None,
+            Some(support)
+        )),
+        (vec(uniform2(number()), 3..5), length()).prop_map(|(section, support)| (
+            None,
+            Some(section),
+            None,
+            Some(support)
+        )),
+        "[ac]".prop_map(|tool| (None, None, Some(tool), None)),
+    ];
+    (spine(), proptest::option::of(spine()), shape, any::<bool>(), number()).prop_map(
+        |(spine, spine_end, (radius, section, tool, support), is_along, distance)| {
+            let (mode, direction) =
+                if is_along { (StripMode::Along, None) } else { (StripMode::Across, Some([0.0, 0.5, 1.0])) };
+            let reference = section.as_ref().map(|_| [1.0, 0.0, 0.0]);
+            let profile = support.map(|_| Profile::Contact);
+            Stroke::Strip(Strip {
+                mode,
+                spine,
+                spine_end,
+                radius,
+                section,
+                reference,
+                tool,
+                support,
+                profile,
+                distance,
+                direction,
+            })
+        },
+    )
 }
 
 fn recipe() -> impl Strategy<Value = Recipe> {
