@@ -125,7 +125,7 @@ fn errors_name_line_key_and_remedy() {
         (
             "kind = \"bend\"",
             "kind = \"quux\"",
-            "line 32: stroke.2.kind: unknown value `quux`; known here: move, twist, bend, stamp, strip, ring",
+            "line 32: stroke.2.kind: unknown value `quux`; known here: move, twist, bend, stamp, strip, ring, pose, region",
         ),
         ("[integrate]", "[intergrate]", "line 37: intergrate: unknown key; did you mean `integrate`?"),
         ("scale = 2.0", "scale = 0", "line 5: target.transform.scale: is 0; give a number above 0"),
