@@ -113,12 +113,12 @@ impl Pose {
     fn validate_tree(&self) -> Check {
         let mut first = None;
         for (index, bone) in self.bones.iter().enumerate() {
-            if bone.parent.is_none() {
-                if let Some(first) = first.replace(index) {
-                    let first: &Bone = &self.bones[first];
-                    let text = format!("lacks a parent, as `{}` does; only one bone can carry all others", first.name);
-                    return fail(&format!("bones.{index}"), RecipeProblem::Other(text));
-                }
+            if bone.parent.is_none()
+                && let Some(first) = first.replace(index)
+            {
+                let text =
+                    format!("lacks a parent, as `{}` does; only one bone can carry all others", self.bones[first].name);
+                return fail(&format!("bones.{index}"), RecipeProblem::Other(text));
             }
             let mut names = vec![bone.name.as_str()];
             let mut at = bone;
