@@ -6,7 +6,8 @@ use glam::DVec3;
 use isochore_mesh::{Cancelled, ClosedMesh, MeshError, Monitor, TriMesh, signed_volume};
 
 use crate::{
-    Note, Receipt, RefineOptions, Stamp, StampError, Stroke, StrokeReceipt,
+    JacobianRange, Note, Receipt, RefineOptions, Stamp, StampError, Stroke, StrokeReceipt,
+    guard::{choose_step, prepare_lock, refine_to_volume},
     lock::lock_volume,
     press::{PressError, press},
     refine::{Criteria, Refinement, refine, resolve_field, untangle},
@@ -35,6 +36,8 @@ pub struct Deformed {
     pub mesh: TriMesh,
     /// The same triangles at rest.
     pub rest: TriMesh,
+    /// The strokes, in time steps as fine as they had to be.
+    pub strokes: Vec<Stroke>,
     /// What was done.
     pub receipt: Receipt,
 }
@@ -107,9 +110,10 @@ pub fn deform(
 
     let mut facet_error = 0.0;
     // A stamp is no flow: it acts on the surface that those before it leave, and those after it set out from what it leaves.
-    for phase in strokes.split_inclusive(|stroke| matches!(stroke, Stroke::Stamp(_))) {
+    let mut strokes = strokes.to_vec();
+    for phase in strokes.split_inclusive_mut(|stroke| matches!(stroke, Stroke::Stamp(_))) {
         let (flows, stamp) = match phase {
-            [flows @ .., Stroke::Stamp(stamp)] => (flows, Some(stamp)),
+            [flows @ .., Stroke::Stamp(stamp)] => (flows, Some(&*stamp)),
             flows => (flows, None),
         };
         facet_error += flow(&mut tessellation, flows, criteria.as_ref(), &mut receipt, monitor)?;
@@ -119,6 +123,13 @@ pub fn deform(
     }
     if let Some(vertex) = tessellation.image.iter().position(|image| !image.is_finite()) {
         return Err(DeformError::Overflow { vertex });
+    }
+    if let Some(volume) = volume_before.filter(|_| options.lock) {
+        let begin = Instant::now();
+        let prepared = prepare_lock(&mut tessellation, since_last_stamp(&strokes), criteria.as_ref(), volume, monitor)?;
+        facet_error = prepared.facet_error.unwrap_or(facet_error);
+        receipt.notes.extend((prepared.crossing > 0).then_some(Note::LockCrossings { triangles: prepared.crossing }));
+        receipt.seconds.refine += begin.elapsed().as_secs_f64();
     }
     receipt.moved_vertices = count_different(&tessellation.rest, &tessellation.image);
     receipt.inserted_vertices = tessellation.rest.len() - mesh.positions.len();
@@ -148,23 +159,33 @@ pub fn deform(
     let rest = mesh.subdivided(&subdivision);
     let mut mesh = TriMesh { positions: image, ..rest.clone() };
     mesh.turn_normals(&rest.positions);
-    Ok(Deformed { mesh, rest, receipt })
+    Ok(Deformed { mesh, rest, strokes, receipt })
+}
+
+/// The strokes that the base of the flow still has before it.
+fn since_last_stamp(strokes: &[Stroke]) -> &[Stroke] {
+    let last = strokes.iter().rposition(|stroke| matches!(stroke, Stroke::Stamp(_)));
+    &strokes[last.map_or(0, |last| last + 1)..]
 }
 
 /// Carries the mesh through all `strokes`, none of which is a stamp. Returns the facet error.
 fn flow(
     mesh: &mut Tessellation,
-    strokes: &[Stroke],
+    strokes: &mut [Stroke],
     criteria: Option<&Criteria>,
     receipt: &mut Receipt,
     monitor: &dyn Monitor,
 ) -> Result<f64, Cancelled> {
     let mut facet_error = 0.0;
     for index in 0..strokes.len() {
-        facet_error = apply(mesh, &strokes[..=index], criteria, receipt, monitor)?;
+        let jacobian = choose_step(&mut strokes[index], receipt.strokes.len(), mesh, &mut receipt.notes, monitor)?;
+        facet_error = apply(mesh, &strokes[..=index], jacobian, criteria, receipt, monitor)?;
     }
     match criteria {
-        Some(criteria) => Ok(separate(mesh, strokes, criteria, receipt, monitor)?.unwrap_or(facet_error)),
+        Some(criteria) => {
+            facet_error = refine_to_volume(mesh, strokes, criteria, facet_error, monitor)?;
+            Ok(separate(mesh, strokes, criteria, receipt, monitor)?.unwrap_or(facet_error))
+        }
         None => Ok(facet_error),
     }
 }
@@ -201,6 +222,7 @@ fn imprint(
             evaluations: pressed.refinement.evaluations,
             moved,
             inserted: pressed.refinement.inserted,
+            jacobian: None,
             volume_change: None,
         },
     );
@@ -211,6 +233,7 @@ fn imprint(
 fn apply(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
+    jacobian: Option<JacobianRange>,
     criteria: Option<&Criteria>,
     receipt: &mut Receipt,
     monitor: &dyn Monitor,
@@ -247,6 +270,7 @@ fn apply(
             evaluations: resolved.evaluations + evaluations + refined.evaluations,
             moved,
             inserted: resolved.inserted + refined.inserted,
+            jacobian,
             volume_change: None,
         },
     );

@@ -18,6 +18,8 @@ mod flow;
 #[cfg(test)]
 mod flux;
 mod gauge;
+mod guard;
+mod jacobian;
 mod jointed_tool;
 mod lock;
 mod mask;
@@ -44,6 +46,7 @@ mod tool;
 pub use deform::{DeformError, DeformOptions, Deformed, deform};
 pub use field::{Field, FieldBlock, MovingField, NO_CORE};
 pub use flow::{FlowError, flow_points};
+pub use jacobian::JacobianRange;
 pub use jointed_tool::{Bone, JointedTool, JointedToolError, Posture};
 pub use mask::{Mask, MaskError, MirrorPlane, Pin, VertexMask};
 pub use moving_tool::MovingTool;

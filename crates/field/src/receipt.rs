@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::JacobianRange;
+
 /// What a deformation did. Volumes are in cubic model units and stand only where the mesh is closed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Receipt {
@@ -40,6 +42,8 @@ pub struct StrokeReceipt {
     pub moved: usize,
     /// Vertices that refinement inserted for this stroke.
     pub inserted: usize,
+    /// Jacobian determinants of its flow map at some of the vertices that it moved; none where it moved none, or is no flow.
+    pub jacobian: Option<JacobianRange>,
     /// Signed change of the volume by this stroke, as a share of the volume at rest; none where that is zero.
     pub volume_change: Option<f64>,
 }
@@ -64,6 +68,25 @@ pub enum Note {
         stroke: usize,
         /// The limit.
         max_triangles: usize,
+    },
+    /// The time step was halved because the flow map would not have kept volumes.
+    StepHalved {
+        /// Index of the stroke, from 0.
+        stroke: usize,
+        /// How often.
+        times: u32,
+    },
+    /// The flow map of a stroke does not keep volumes at some vertices, and finer steps did not mend it.
+    Jacobian {
+        /// Index of the stroke, from 0.
+        stroke: usize,
+        /// Its determinants.
+        range: JacobianRange,
+    },
+    /// The lock made triangles cross, and more refinement did not mend it.
+    LockCrossings {
+        /// How many.
+        triangles: usize,
     },
     /// The flat triangles alone are off by a noticeable share of the volume.
     FacetError {
@@ -96,6 +119,19 @@ impl fmt::Display for Note {
         match self {
             Self::TriangleLimit { stroke, max_triangles } => {
                 write!(f, "refinement of stroke {stroke} stopped at the limit of {max_triangles} triangles")
+            }
+            Self::StepHalved { stroke, times } => {
+                write!(f, "the time step of stroke {stroke} was halved {times} times to keep volumes")
+            }
+            Self::Jacobian { stroke, range: JacobianRange { min, max } } => {
+                write!(
+                    f,
+                    "stroke {stroke} scales volumes by {min:.3} to {max:.3} where finer steps do not mend it: \
+                     its velocity jumps there, or a profile squeezes too much"
+                )
+            }
+            Self::LockCrossings { triangles } => {
+                write!(f, "the lock made {triangles} triangles cross; refine more before locking")
             }
             Self::FacetError { share } => {
                 write!(f, "the flat triangles alone are off by {:.3} % of the volume; refine more", 100.0 * share)

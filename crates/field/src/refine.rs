@@ -95,6 +95,16 @@ const AS_COARSE: f64 = 0.75;
 const WORTHWHILE: f64 = 0.9;
 
 impl Criteria {
+    /// The facet error at which refinement ends, cubic model units.
+    pub(crate) fn volume(&self) -> f64 {
+        self.volume
+    }
+
+    /// The same criteria with another facet error allowed.
+    pub(crate) fn with_volume(self, volume: f64) -> Self {
+        Self { volume, ..self }
+    }
+
     /// No split goes beyond this number of triangles.
     pub(crate) fn max_triangles(&self) -> usize {
         self.max_triangles

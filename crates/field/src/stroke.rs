@@ -96,6 +96,15 @@ impl Stroke {
         Ok(Self::Field(fields.masked(mask, bounds)?))
     }
 
+    /// The stroke with half the time step; none where it takes no steps, or too many.
+    pub(crate) fn with_half_step(&self) -> Option<Self> {
+        match self {
+            Self::Move(stroke) => stroke.with_half_step().ok().map(Self::Move),
+            Self::Field(stroke) => stroke.with_half_step().ok().map(Self::Field),
+            Self::Twist(_) | Self::Bend(_) | Self::Stamp(_) => None,
+        }
+    }
+
     /// The first part of the stroke, `fraction` of its time, from 0 to 1.
     pub fn truncated(&self, fraction: f64) -> Self {
         let fraction = fraction.clamp(0.0, 1.0);

@@ -170,7 +170,7 @@ impl Replay {
             // Done again, the lock would aim at the volume of the split mesh at rest, which rounds differently.
             return Ok(self.deformed.mesh.clone());
         }
-        let strokes = &self.scene.strokes;
+        let strokes = &self.deformed.strokes;
         let time = strokes.len() as f64 * (f64::from(index) / f64::from(count - 1));
         let whole = (time as usize).min(strokes.len());
         let mut so_far = strokes[..whole].to_vec();

@@ -95,6 +95,11 @@ pub struct StrokeReport {
     pub moved: usize,
     /// Vertices that refinement added for it.
     pub inserted: usize,
+    /// Least Jacobian determinant of its flow map at some of the vertices that it moved; one where volumes are kept. Null where
+    /// it moved none, or is a stamp.
+    pub jacobian_min: Option<f64>,
+    /// The largest such determinant.
+    pub jacobian_max: Option<f64>,
     /// Signed relative change of the volume by it; null for an open target.
     pub volume_change: Option<f64>,
 }
@@ -175,6 +180,8 @@ impl Report {
             evaluations: receipt.evaluations,
             moved: receipt.moved,
             inserted: receipt.inserted,
+            jacobian_min: receipt.jacobian.map(|range| range.min),
+            jacobian_max: receipt.jacobian.map(|range| range.max),
             volume_change: receipt.volume_change,
         });
         let notes = receipt.notes.iter().map(ToString::to_string);

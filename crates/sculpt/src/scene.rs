@@ -2,6 +2,7 @@
 
 mod mask;
 mod pose;
+mod rates;
 mod region;
 mod strip;
 
@@ -49,6 +50,7 @@ impl Scene {
     pub fn build(recipe: &Recipe, meshes: &Meshes, monitor: &dyn Monitor) -> Result<Self, ReplayError> {
         recipe.validate()?;
         let target = target(&recipe.target, meshes)?;
+        rates::check(recipe, target.bounds())?;
         if recipe.promise.volume.is_some() {
             let defect = match ClosedMesh::new(&target) {
                 Ok(closed) => (closed.volume() == 0.0).then(|| "it is zero".to_owned()),

@@ -88,6 +88,16 @@ fn points_move_as_vertices_do_and_need_the_target() {
 }
 
 #[test]
+fn rates_that_refinement_cannot_follow_are_refused() {
+    let refined = |degrees: &str| error(&["mask={}", "refine.enabled=true", degrees]);
+    // The corners of the bounds are √3 from the origin: a shear of 2 · 3 a radian.
+    let words = "stroke.1.degrees_per_unit2: is 1000, which winds the target up";
+    assert!(refined("stroke.1.degrees_per_unit2=1000").contains(words));
+    let bare = recipe(&["mask={}", "stroke.1.degrees_per_unit2=1000"]);
+    assert!(replay(&bare, &meshes(), &Silent).is_ok());
+}
+
+#[test]
 fn what_is_wrong_with_a_mask_is_named() {
     for (settings, words) in [
         (&["mask.pins.0.support=0"][..], "mask.pins.0.support: is 0; give a number above 0"),

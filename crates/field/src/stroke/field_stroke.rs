@@ -115,6 +115,10 @@ impl FieldStroke {
         self.legs.iter().any(|leg| leg.may_touch(center, radius))
     }
 
+    pub(super) fn with_half_step(&self) -> Result<Self, StrokeError> {
+        Self::from_spans(self.spans.clone(), 0.5 * self.step)
+    }
+
     pub(super) fn truncated(&self, fraction: f64) -> Self {
         let mut time_left = fraction * self.spans.iter().map(|span| span.end).sum::<f64>();
         let mut spans = Vec::new();

@@ -115,6 +115,10 @@ impl Move {
         self.segments.iter().any(|segment| segment.may_touch(&self.tool, center, radius))
     }
 
+    pub(super) fn with_half_step(&self) -> Result<Self, StrokeError> {
+        Self::new(self.tool.clone(), self.keys.clone(), 0.5 * self.step)
+    }
+
     pub(super) fn truncated(&self, fraction: f64) -> Self {
         let time = fraction * self.segments.len() as f64;
         let whole = (time as usize).min(self.segments.len() - 1);

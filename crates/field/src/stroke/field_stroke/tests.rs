@@ -118,3 +118,79 @@ fn strokes_without_a_way_are_refused() {
     assert_eq!(FieldStroke::new(motion.fields(), 0.0).unwrap_err(), StrokeError::Step(0.0));
     assert!(matches!(FieldStroke::new(motion.fields(), 1e-9).unwrap_err(), StrokeError::TooManySteps { key: 0, .. }));
 }
+
+/// A ball that swells, shrinks and swings to and fro: the edge of its support has another speed at every instant.
+#[derive(Debug)]
+struct Pulse;
+
+#[derive(Debug)]
+struct PulseInstant {
+    center: DVec3,
+    radius: f64,
+}
+
+impl MovingField for Pulse {
+    fn at(&self, time: f64) -> Box<dyn Field> {
+        let phase = 6.0 * time;
+        let center = DVec3::new(0.5 * libm::sin(phase), 0.3 * time * time, 0.0);
+        Box::new(PulseInstant { center, radius: 0.3 + 0.2 * libm::sin(2.0 * phase) })
+    }
+
+    /// |d center/dt| + |d radius/dt|: at most 3 across, 0.6 along, and 2.4.
+    fn approach_speed(&self) -> f64 {
+        DVec3::new(3.0, 0.6, 0.0).length() + 2.4
+    }
+
+    fn carrying_speed(&self) -> f64 {
+        1.0
+    }
+
+    fn feature_size(&self) -> f64 {
+        0.3
+    }
+}
+
+impl Field for PulseInstant {
+    fn evaluate_into(&self, points: &PointBlock, out: &mut FieldBlock) {
+        for lane in 0..LANES {
+            let arm = points.get(lane) - self.center;
+            let beyond = arm.length() - self.radius;
+            if beyond >= 0.0 {
+                out.set_outside(lane, beyond);
+                continue;
+            }
+            let (share, slope) = Profile::Quintic.evaluate(arm.length() / self.radius);
+            let gradient = slope / self.radius * arm.normalize_or_zero();
+            out.set_product(lane, share, gradient, 0.5 * DVec3::Z.cross(arm), DVec3::Z);
+            out.clearance[lane] = 0.0;
+            out.core[lane] = NO_CORE;
+        }
+    }
+
+    fn bounds(&self) -> isochore_mesh::Aabb {
+        isochore_mesh::Aabb::of([self.center]).expanded(self.radius)
+    }
+}
+
+#[test]
+fn sleeping_is_sound_where_the_support_changes_with_time() {
+    let fields = FieldStroke::new(vec![Arc::new(Pulse)], 0.02).unwrap();
+    let mut restless = fields.clone();
+    restless.legs.iter_mut().for_each(|leg| leg.approach_speed = f64::INFINITY);
+    let points = scattered_points(2000, 1.3);
+    let (mut slept, mut awake) = (points.clone(), points.clone());
+    let evaluations = fields.advance(&mut slept);
+    let all = restless.advance(&mut awake);
+    assert_eq!(slept, awake);
+    assert!(evaluations < all, "{evaluations} of {all}");
+    let untouchable = points.iter().zip(&slept).filter(|(point, _)| !fields.may_touch(**point, 0.0));
+    assert!(untouchable.clone().count() > 500);
+    assert!(untouchable.into_iter().all(|(point, moved)| point == moved));
+    assert!(slept.iter().zip(&points).filter(|(a, b)| a != b).count() > 100);
+    // A tenth of the true speed lets points sleep while the support passes: the test can tell.
+    let mut careless = fields.clone();
+    careless.legs.iter_mut().for_each(|leg| leg.approach_speed *= 0.1);
+    let mut missed = points.clone();
+    careless.advance(&mut missed);
+    assert_ne!(missed, awake);
+}
