@@ -211,53 +211,37 @@ fn outward_box(corners: &[DVec3; 3]) -> obvhs::aabb::Aabb {
     obvhs::aabb::Aabb::new(Vec3A::from_array(min.to_array().map(down)), Vec3A::from_array(max.to_array().map(up)))
 }
 
-/// The nodes of a tree with one triangle a leaf, cut where [`LEAF_TRIANGLES`] remain: children behind their parents and beside each
+/// The nodes of a new tree, which has one triangle a leaf, cut where [`LEAF_TRIANGLES`] remain: children behind their parents and beside each
 /// other, and the triangles below any node beside each other in the order that comes with them.
 fn with_larger_leaves(tree: &Bvh2) -> (Vec<Node>, Vec<u32>) {
-    let is_small = |mut below: u32| {
-        // Counts no further than needed.
-        let mut pending = [0; LEAF_TRIANGLES as usize];
-        let (mut waiting, mut leaves) = (0, 0);
-        loop {
-            let node = &tree.nodes[below as usize];
-            if node.is_leaf() {
-                leaves += 1;
-                if waiting == 0 {
-                    return leaves <= LEAF_TRIANGLES as usize;
-                }
-                waiting -= 1;
-                below = pending[waiting];
-            } else {
-                if leaves + waiting + 2 > LEAF_TRIANGLES as usize {
-                    return false;
-                }
-                pending[waiting] = node.first_index + 1;
-                waiting += 1;
-                below = node.first_index;
-            }
+    // Triangles below each node; children come after their parents.
+    let mut below = vec![1_u32; tree.nodes.len()];
+    for (i, node) in tree.nodes.iter().enumerate().rev() {
+        if !node.is_leaf() {
+            below[i] = below[node.first_index as usize] + below[node.first_index as usize + 1];
         }
-    };
+    }
     let node = |source: u32, first: u32, count: u32| {
         let aabb = tree.nodes[source as usize].aabb();
         Node { min: aabb.min.to_array(), max: aabb.max.to_array(), first, count }
     };
     let mut order = Vec::with_capacity(tree.primitive_indices.len());
-    let mut nodes = vec![node(0, 0, 0)];
+    let mut nodes = Vec::with_capacity(tree.nodes.len());
+    nodes.push(node(0, 0, 0));
     let mut pending = vec![(0, 0)];
     let mut leaf = Vec::new();
     while let Some((source, place)) = pending.pop() {
-        if is_small(source) {
-            let first = order.len() as u32;
+        if below[source as usize] <= LEAF_TRIANGLES {
+            nodes[place] = node(source, order.len() as u32, below[source as usize]);
             leaf.push(source);
-            while let Some(below) = leaf.pop() {
-                let below = &tree.nodes[below as usize];
-                if below.is_leaf() {
-                    order.push(tree.primitive_indices[below.first_index as usize]);
+            while let Some(part) = leaf.pop() {
+                let part = &tree.nodes[part as usize];
+                if part.is_leaf() {
+                    order.push(tree.primitive_indices[part.first_index as usize]);
                 } else {
-                    leaf.extend([below.first_index + 1, below.first_index]);
+                    leaf.extend([part.first_index + 1, part.first_index]);
                 }
             }
-            nodes[place] = node(source, first, order.len() as u32 - first);
         } else {
             let (first, children) = (nodes.len(), tree.nodes[source as usize].first_index);
             nodes[place].first = first as u32;

@@ -33,27 +33,28 @@ impl OrientedBox {
                 Piece::join(&pieces[node.first as usize], &pieces[node.first as usize + 1])
             };
         }
-        let mut shells: Vec<Shell> = pieces.par_iter().map(|piece| Shell::around(piece, bvh)).collect();
         // Boxes of large pieces hold the boxes of the grains in them, which is nearly as tight and far faster.
-        let mut grains: Vec<u32> = (bvh.nodes().iter().zip(&pieces))
+        let mut grains: Vec<&Piece> = (bvh.nodes().iter().zip(&pieces))
             .filter(|(node, piece)| node.count == 0 && piece.slots.len() > GRAIN)
-            .flat_map(|(node, _)| [node.first, node.first + 1])
-            .filter(|&child| pieces[child as usize].slots.len() <= GRAIN)
+            .flat_map(|(node, _)| &pieces[node.first as usize..][..2])
+            .filter(|child| child.slots.len() <= GRAIN)
             .collect();
-        grains.sort_unstable_by_key(|&grain| pieces[grain as usize].slots.start);
-        let start = |slot: u32| grains.partition_point(|&grain| pieces[grain as usize].slots.start < slot);
-        let large: Vec<(usize, Shell)> = (pieces.par_iter().enumerate())
-            .filter(|(_, piece)| piece.slots.len() > GRAIN)
-            .map(|(i, piece)| {
-                let grains = &grains[start(piece.slots.start)..start(piece.slots.end)];
-                (i, shells[i].holding(grains.iter().map(|&grain| &shells[grain as usize])))
-            })
-            .collect();
-        for (i, shell) in large {
-            shells[i] = shell;
-        }
+        grains.sort_unstable_by_key(|grain| grain.slots.start);
+        let shells: Vec<Shell> = grains.par_iter().map(|grain| Shell::along(grain).around(grain, bvh)).collect();
+        let first_from = |slot: u32| grains.partition_point(|grain| grain.slots.start < slot);
+
         let rounding = COORDINATE_ROUNDING * (largest + 1.0);
-        shells.par_iter().map(|shell| shell.rounded(rounding)).collect()
+        (pieces.par_iter())
+            .map(|piece| {
+                let shell = Shell::along(piece);
+                let shell = if piece.slots.len() <= GRAIN {
+                    shell.around(piece, bvh)
+                } else {
+                    shell.holding(&shells[first_from(piece.slots.start)..first_from(piece.slots.end)])
+                };
+                shell.rounded(rounding)
+            })
+            .collect()
     }
 
     /// Squared distances to the points.
@@ -83,30 +84,29 @@ struct Shell {
 }
 
 impl Shell {
-    /// Axes across and along the piece; around all its corners, unless these are many.
-    fn around(piece: &Piece, bvh: &Bvh) -> Self {
+    /// Holds nothing yet; its axes lie across and along the piece.
+    fn along(piece: &Piece) -> Self {
         let normal = piece.normal.try_normalize().unwrap_or(DVec3::X);
         let tangent = piece.tangent - normal * normal.dot(piece.tangent);
         let tangent = tangent.try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
-        let mut shell = Self {
-            axes: DMat3::from_cols(normal, tangent, normal.cross(tangent)),
-            min: DVec3::INFINITY,
-            max: DVec3::NEG_INFINITY,
-        };
-        if piece.slots.len() <= GRAIN {
-            let turn = shell.axes.transpose();
-            for corner in bvh.corners()[piece.slots.start as usize..piece.slots.end as usize].as_flattened() {
-                let turned = turn * *corner;
-                (shell.min, shell.max) = (shell.min.min(turned), shell.max.max(turned));
-            }
-        }
-        shell
+        let axes = DMat3::from_cols(normal, tangent, normal.cross(tangent));
+        Self { axes, min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }
     }
 
-    /// A box along the same axes around others.
-    fn holding<'a>(&self, others: impl Iterator<Item = &'a Self>) -> Self {
+    /// Grown around all corners of the piece.
+    fn around(self, piece: &Piece, bvh: &Bvh) -> Self {
+        let turn = self.axes.transpose();
+        let corners = bvh.corners()[piece.slots.start as usize..piece.slots.end as usize].as_flattened();
+        corners.iter().fold(self, |shell, &corner| {
+            let turned = turn * corner;
+            Self { min: shell.min.min(turned), max: shell.max.max(turned), ..shell }
+        })
+    }
+
+    /// Grown around other boxes.
+    fn holding(self, others: &[Self]) -> Self {
         let to_axes = self.axes.transpose();
-        others.fold(Self { axes: self.axes, min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }, |shell, other| {
+        others.iter().fold(self, |shell, other| {
             let turn = to_axes * other.axes;
             let middle = turn * (0.5 * (other.min + other.max));
             let spread = DMat3::from_cols(turn.x_axis.abs(), turn.y_axis.abs(), turn.z_axis.abs());
