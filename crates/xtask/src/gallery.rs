@@ -23,12 +23,30 @@ struct Figure {
 }
 
 /// The chapters on deformation.
-const DEFORMATIONS: [Figure; 12] = [
+const DEFORMATIONS: [Figure; 15] = [
     Figure {
         number: "11.2",
         shows: "Field of a ball on a section: red inside, blue outside, green the ball's motion",
         recipes: &["sphere"],
         drawings: &["field_sphere"],
+    },
+    Figure {
+        number: "11.3",
+        shows: "Field along a strip on a section, and the horn that it draws out of a planet",
+        recipes: &["strip_along"],
+        drawings: &["field_strip_along"],
+    },
+    Figure {
+        number: "11.4",
+        shows: "Field across a strip on a section, the wire that it pushes into a slab, and a spine that changes its shape",
+        recipes: &["strip_across", "snake"],
+        drawings: &["field_strip_across"],
+    },
+    Figure {
+        number: "11.5",
+        shows: "Field of a ring on a section, and the ring pressed into a slab",
+        recipes: &["ring"],
+        drawings: &["field_ring"],
     },
     Figure {
         number: "11.7",

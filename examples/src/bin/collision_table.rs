@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A frame is a step of the integrator; the exact flow of a twist is one.
+/// A frame is a step of the integrator; what needs none is one frame.
 fn steps(stroke: &Stroke) -> usize {
     match stroke {
         Stroke::Move(stroke) => stroke.steps(),

@@ -40,7 +40,7 @@ enum Colors {
     BySpeed,
 }
 
-const FIGURES: [Figure; 3] = [
+const FIGURES: [Figure; 6] = [
     Figure {
         name: "field_sphere",
         recipe: "sphere",
