@@ -49,6 +49,23 @@ const FIGURES: [Figure; 6] = [
         normal: DVec3::new(2.0, 1.0, 0.0),
         colors: Colors::BySide,
     },
+    Figure {
+        name: "field_strip_along",
+        recipe: "strip_along",
+        leg: 0,
+        time: 0.5,
+        normal: DVec3::new(1.0, -2.0, 0.0),
+        colors: Colors::BySide,
+    },
+    Figure {
+        name: "field_strip_across",
+        recipe: "strip_across",
+        leg: 0,
+        time: 0.5,
+        normal: DVec3::X,
+        colors: Colors::BySide,
+    },
+    Figure { name: "field_ring", recipe: "ring", leg: 0, time: 0.5, normal: DVec3::NEG_Y, colors: Colors::BySide },
     Figure { name: "field_knight", recipe: "knight", leg: 0, time: 0.5, normal: DVec3::NEG_Y, colors: Colors::BySpeed },
     Figure { name: "field_rod", recipe: "rod", leg: 1, time: 0.5, normal: DVec3::Z, colors: Colors::BySide },
 ];
