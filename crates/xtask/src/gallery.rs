@@ -12,7 +12,7 @@ use crate::shell::{TaskResult, cargo, run, target, workspace};
 
 /// A figure of Zheng's thesis, and what shows the same here.
 struct Figure {
-    /// Its number in the thesis.
+    /// Its number in the thesis, or the section that describes it without one.
     number: &'static str,
     /// What it shows, here.
     shows: &'static str,
@@ -23,7 +23,13 @@ struct Figure {
 }
 
 /// The chapters on deformation.
-const DEFORMATIONS: [Figure; 15] = [
+const DEFORMATIONS: [Figure; 18] = [
+    Figure {
+        number: "9.1",
+        shows: "A ball moves on through a surface, which closes behind it",
+        recipes: &["region"],
+        drawings: &[],
+    },
     Figure {
         number: "11.2",
         shows: "Field of a ball on a section: red inside, blue outside, green the ball's motion",
@@ -49,6 +55,12 @@ const DEFORMATIONS: [Figure; 15] = [
         drawings: &["field_ring"],
     },
     Figure {
+        number: "11.6",
+        shows: "Bodies deformed by a ball, a strip and a shape of free form",
+        recipes: &["sphere", "strip_along", "free_form"],
+        drawings: &[],
+    },
+    Figure {
         number: "11.7",
         shows: "A shape, the reach of its field, and an offset surface within, cut open",
         recipes: &[],
@@ -60,6 +72,7 @@ const DEFORMATIONS: [Figure; 15] = [
         recipes: &["foot", "coin"],
         drawings: &[],
     },
+    Figure { number: "11.2.6", shows: "A jointed hand closes on clay", recipes: &["grip"], drawings: &[] },
     Figure {
         number: "12.1",
         shows: "Field of a shape of free form on a section, colored by speed",
