@@ -7,8 +7,10 @@
 //! u is the smooth minimum of the scaled distances dᵢ/Rᵢ to the bones, wᵢ a partition of unity that gives every bone its
 //! own surface, and Wₖ the sum of wᵢ over the bones that joint k carries. A₀ is the potential of the first bone's motion, ΔAₖ
 //! that of the turn about joint k, in a gauge that vanishes to second order there, so that ∇Wₖ × ΔAₖ stays small where Wₖ
-//! changes; χᵢ moves the gauge of bone i to its own centroid, as that of a single [`Tool`]. Summing the fields of the bones
-//! instead would move what two of them share at twice the speed; blending their velocities would be no curl.
+//! changes; χᵢ moves the gauge of each part of bone i's motion to the middle of all bones that the part moves, which cuts the
+//! flow back around them. Along the axis of a turn that middle is the parent's, so that fingers side by side which bend alike
+//! have one potential, and the material between them goes with them. Summing the fields of the bones instead would move what
+//! two of them share at twice the speed; blending their velocities would be no curl.
 //!
 //! The distances belong to the bones and move with them: they are never sampled anew.
 //!

@@ -115,6 +115,11 @@ impl RigidMotion {
         ((0.5 * self.linear + turn / 3.0).cross(r), self.linear + turn)
     }
 
+    /// The same motion, described about another center.
+    pub(crate) fn about(&self, center: DVec3) -> Self {
+        Self { center, linear: self.velocity(center), angular: self.angular }
+    }
+
     /// The velocity of `point`, v + ω×r.
     pub(crate) fn velocity(&self, point: DVec3) -> DVec3 {
         self.linear + self.angular.cross(point - self.center)

@@ -27,88 +27,80 @@ pub(super) struct PlacedBone {
     pub(super) placement: Placement,
     /// World now from world at rest.
     pub(super) rest: Pose,
-    /// In the gauge of the bone's centroid.
+    /// How the bone moves.
     pub(super) motion: RigidMotion,
-    /// The motion in parts, from the first bone to this one, each with the change of gauge to the bone's centroid.
-    pub(super) recenterings: Vec<Recentering>,
-    /// Constant that is added to the changes of gauge.
-    pub(super) offset: f64,
+    /// That motion in parts, from that of the whole to the turn about the bone's own joint.
+    pub(super) parts: Vec<MotionPart>,
     /// Box that holds the support.
     pub(super) support: Aabb,
 }
 
-/// A part of a bone's motion whose potential stands in one gauge, and the way to that of the bone's centroid.
+/// A part of the motion of all bones that one joint carries, with its vector potential in two gauges.
+///
+/// All these bones share the part and both its potentials, so that what is between them does not shear.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Recentering {
-    part: RigidMotion,
-    /// Whether the potential is that of a turn about an axis through the center, −½ ρ² ω with ρ the distance from the axis.
-    ///
-    /// Turns about the same axis then have the same potential, wherever their joints lie on it: the fingers of a hand that
-    /// close together do not shear what is between them.
-    is_turn: bool,
-    /// From the center of the part to the centroid of the bone.
-    shift: DVec3,
+pub(super) struct MotionPart {
+    /// About a point near the middle of those bones: the gauge with the least flow back around them.
+    pub(super) centered: RigidMotion,
+    /// The joint about which they turn; none for the motion of the whole.
+    pub(super) joint: Option<DVec3>,
 }
 
-impl Recentering {
-    /// A motion in the gauge of its own center.
-    pub(super) fn of_motion(part: RigidMotion, center: DVec3) -> Self {
-        Self { part, is_turn: false, shift: center - part.center }
-    }
-
-    /// A turn about `joint`, in the gauge of its axis.
-    pub(super) fn of_turn(joint: DVec3, angular: DVec3, center: DVec3) -> Self {
-        let part = RigidMotion { center: joint, linear: DVec3::ZERO, angular };
-        Self { part, is_turn: true, shift: center - joint }
-    }
-
-    /// The same part for a bone with another centroid.
-    pub(super) fn to(self, center: DVec3) -> Self {
-        Self { shift: center - self.part.center, ..self }
-    }
-
-    /// The potential of the part.
-    fn potential(&self, point: DVec3) -> DVec3 {
-        if self.is_turn {
-            let squared = self.squared_distance_from_axis(point - self.part.center);
-            -0.5 * squared * self.part.angular
-        } else {
-            self.part.potential(point).0
+impl MotionPart {
+    /// The potential in the gauge of the joint's axis, −½ ρ² ω with ρ the distance from the axis.
+    ///
+    /// It vanishes to second order at the joint. Turns about the same axis have the same potential, wherever their joints lie
+    /// on it.
+    fn joint_potential(&self, point: DVec3) -> DVec3 {
+        match self.joint {
+            Some(joint) => -0.5 * self.squared_distance_from_axis(point - joint) * self.centered.angular,
+            None => self.centered.potential(point).0,
         }
     }
 
-    /// χ, whose gradient leads from this potential to ½ v×r + ⅓ (ω×r)×r about the bone's centroid.
+    /// χ, whose gradient leads from the gauge of the joint's axis to the centered one.
     ///
-    /// From the center o of the part to o + a, with r = x − o and v the velocity of o:
+    /// From the joint o to o + a, with r = x − o:
     ///
     /// ```text
-    /// χ = −(½ v×a + ⅙ (ω×a)×a)·r − ⅙ (ω×r)·(a×r)
+    /// χ = −⅙ ((ω×a)×a)·r − ⅙ (ω×r)·(a×r) + ⅙ (ω·r) ρ²
     /// ```
     ///
-    /// and before that, from the gauge of the axis to that of the center, ⅙ (ω·r) ρ².
-    pub(super) fn value(&self, point: DVec3) -> f64 {
-        let RigidMotion { center, linear, angular } = self.part;
-        let (r, a) = (point - center, self.shift);
-        let slope = 0.5 * linear.cross(a) + angular.cross(a).cross(a) / 6.0;
-        let centered = -slope.dot(r) - angular.cross(r).dot(a.cross(r)) / 6.0;
-        if self.is_turn { centered + angular.dot(r) * self.squared_distance_from_axis(r) / 6.0 } else { centered }
+    /// where the last leads from the gauge of the axis to that of the joint.
+    fn gauge(&self, point: DVec3) -> f64 {
+        let Some(joint) = self.joint else { return 0.0 };
+        let angular = self.centered.angular;
+        let (r, a) = (point - joint, self.centered.center - joint);
+        (angular.dot(r) * self.squared_distance_from_axis(r)
+            - angular.cross(a).cross(a).dot(r)
+            - angular.cross(r).dot(a.cross(r)))
+            / 6.0
     }
 
     fn squared_distance_from_axis(&self, r: DVec3) -> f64 {
-        let speed = self.part.angular.length_squared();
-        if speed > 0.0 { self.part.angular.cross(r).length_squared() / speed } else { 0.0 }
+        let angular = self.centered.angular;
+        let speed = angular.length_squared();
+        if speed > 0.0 { angular.cross(r).length_squared() / speed } else { 0.0 }
     }
 }
 
 impl PlacedBone {
-    /// χᵢ of this bone.
-    pub(super) fn gauge(&self, point: DVec3) -> f64 {
-        self.recenterings.iter().map(|recentering| recentering.value(point)).sum::<f64>() + self.offset
+    /// The potential of the bone's motion, all its parts centered, and its curl.
+    fn potential(&self, point: DVec3) -> (DVec3, DVec3) {
+        self.parts.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, part| {
+            let (potential, curl) = part.centered.potential(point);
+            (sum.0 + potential, sum.1 + curl)
+        })
     }
 
     /// The potential of the bone's motion in the gauge of the joints that carry it.
     fn joint_potential(&self, point: DVec3) -> DVec3 {
-        self.recenterings.iter().map(|recentering| recentering.potential(point)).sum()
+        self.parts.iter().map(|part| part.joint_potential(point)).sum()
+    }
+
+    /// χᵢ of this bone.
+    fn gauge(&self, point: DVec3) -> f64 {
+        self.parts.iter().map(|part| part.gauge(point)).sum()
     }
 }
 
@@ -165,12 +157,12 @@ impl JointedField {
     /// The blended potential A at `point`, and its curl.
     fn potential(&self, shares: &[Share], point: DVec3) -> (DVec3, DVec3) {
         if let [share] = shares {
-            return self.bones[share.bone].motion.potential(point);
+            return self.bones[share.bone].potential(point);
         }
         let mut sum = (DVec3::ZERO, DVec3::ZERO);
         for share in shares {
             let bone = &self.bones[share.bone];
-            let (potential, curl) = bone.motion.potential(point);
+            let (potential, curl) = bone.potential(point);
             sum.0 += share.value * potential + bone.gauge(point) * share.gradient;
             sum.1 += share.value * curl + share.gradient.cross(bone.joint_potential(point));
         }

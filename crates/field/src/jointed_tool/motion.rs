@@ -7,7 +7,7 @@ use isochore_mesh::Aabb;
 
 use super::{
     JointedTool, JointedToolError, Posture,
-    field::{JointedField, PlacedBone, Recentering},
+    field::{JointedField, MotionPart, PlacedBone},
 };
 use crate::{
     BodyTwist, Field, MovingField, Pose,
@@ -60,6 +60,28 @@ impl PostureChange {
         poses
     }
 
+    /// The middle, in the world now, of each bone with all that it carries: the mean of their centroids, weighted by the
+    /// volumes of their boxes.
+    fn middles(&self, poses: &[Pose]) -> Vec<DVec3> {
+        let bones = self.tool.bones();
+        let mut sums: Vec<(DVec3, f64)> = bones
+            .iter()
+            .zip(poses)
+            .map(|(bone, pose)| {
+                let weight = bone.tool.distance().bounds().size().element_product();
+                (weight * pose.transform(bone.rest.transform(bone.tool.center())), weight)
+            })
+            .collect();
+        for &index in self.tool.order.iter().rev() {
+            if let Some(parent) = bones[index].parent {
+                let (sum, weight) = sums[index];
+                sums[parent].0 += sum;
+                sums[parent].1 += weight;
+            }
+        }
+        sums.into_iter().map(|(sum, weight)| sum / weight).collect()
+    }
+
     /// Upper bound on the speed of the points of each bone's box, grown by a margin, over the whole time.
     fn top_speed(&self, margin: impl Fn(usize) -> f64) -> f64 {
         let bones = self.tool.bones();
@@ -93,6 +115,7 @@ impl MovingField for PostureChange {
         let linear = root.rotation * self.root.linear - angular.cross(root.translation);
         let frame = RigidMotion { center: DVec3::ZERO, linear, angular };
 
+        let middles = self.middles(&poses);
         let mut placed: Vec<Option<PlacedBone>> = vec![None; bones.len()];
         for &index in &self.tool.order {
             let bone = &bones[index];
@@ -101,23 +124,19 @@ impl MovingField for PostureChange {
             let carrier = parent.map_or(frame, |parent| parent.motion);
             let joint = rest.transform(bone.joint);
             let turn = rest.rotation * self.turns[index];
-            let center = rest.transform(bone.rest.transform(bone.tool.center()));
-            let motion = RigidMotion {
-                center,
-                linear: carrier.velocity(center) + turn.cross(center - joint),
-                angular: carrier.angular + turn,
-            };
-            // The first bone moves as one, in the gauge of its own centroid; the others turn past it.
-            let (recenterings, offset) = match parent {
-                None => (vec![Recentering::of_motion(motion, center)], 0.0),
-                Some(parent) => {
-                    let moved = parent.recenterings.iter().map(|recentering| recentering.to(center));
-                    let recenterings: Vec<_> = moved.chain([Recentering::of_turn(joint, turn, center)]).collect();
-                    // Equal at the joint, where the two bones blend.
-                    let before: f64 = recenterings.iter().map(|recentering| recentering.value(joint)).sum();
-                    (recenterings, parent.gauge(joint) - before)
+            let motion =
+                RigidMotion { center: joint, linear: carrier.velocity(joint), angular: carrier.angular + turn };
+            // The first bone's own turn is one of the whole.
+            let part = match parent.and_then(|parent| parent.parts.last()) {
+                None => MotionPart { centered: motion.about(middles[index]), joint: None },
+                Some(part) => {
+                    let axis = turn.normalize_or_zero();
+                    let along = axis.dot(part.centered.center - middles[index]) * axis;
+                    let turn = RigidMotion { center: joint, linear: DVec3::ZERO, angular: turn };
+                    MotionPart { centered: turn.about(middles[index] + along), joint: Some(joint) }
                 }
             };
+            let parts = parent.map_or(&[][..], |parent| &parent.parts).iter().copied().chain([part]).collect();
             let pose = Pose {
                 rotation: (rest.rotation * bone.rest.rotation).normalize(),
                 translation: rest.transform(bone.rest.translation),
@@ -127,8 +146,7 @@ impl MovingField for PostureChange {
                 placement: Placement::from(&pose),
                 rest,
                 motion,
-                recenterings,
-                offset,
+                parts,
                 support: Aabb::of(support.corners().map(|corner| pose.transform(corner))),
             });
         }
