@@ -19,6 +19,8 @@ mod flow;
 mod flux;
 mod gauge;
 mod guard;
+#[cfg(test)]
+mod identities;
 mod jacobian;
 mod jointed_tool;
 mod lock;
