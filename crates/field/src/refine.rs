@@ -84,7 +84,7 @@ const MAX_UNTANGLING_ROUNDS: usize = 12;
 
 /// Splitting triangles that cross may add this share of the triangles there are. Larger spends most of the mesh on sheets that
 /// a profile without a rigid core squeezes ever thinner; smaller gives up on long creases.
-const UNTANGLING_GROWTH: f64 = 0.5;
+const UNTANGLING_GROWTH: f64 = 1.0;
 
 /// Triangles as long as this share of one that crosses, within the same triangle as read, are split with it. Larger lets folds
 /// wander along rows of slivers; smaller splits what is fine already.
