@@ -14,7 +14,7 @@ const BLUE: DVec3 = DVec3::new(0.03, 0.10, 0.65);
 const GREEN: DVec3 = DVec3::new(0.02, 0.45, 0.04);
 
 /// Arrows along the longer side of a section.
-const ARROWS: f64 = 34.0;
+const ARROWS: f64 = 42.0;
 
 /// Slower than this share of the fastest, a place has no arrow.
 const SLOWEST: f64 = 0.02;
@@ -86,9 +86,9 @@ fn draw(figure: &Figure) -> Result<(), Box<dyn Error>> {
     };
     let field = fields[figure.leg].at(figure.time);
     let normal = figure.normal.normalize();
-    let samples = section(&*field, normal);
+    let spacing = spacing(field.bounds(), normal);
+    let samples = section(&*field, normal, spacing);
     let fastest = samples.iter().map(|sample| sample.velocity.length()).fold(0.0, f64::max);
-    let spacing = spacing(field.bounds());
     let arrow = |sample: &Sample| {
         let half = 0.65 * spacing / fastest * sample.velocity;
         (sample.point - half, sample.point + half)
@@ -103,11 +103,11 @@ fn draw(figure: &Figure) -> Result<(), Box<dyn Error>> {
     match figure.colors {
         Colors::BySide => {
             panel = panel.with(body(RED, &|sample| sample.is_inside)).with(body(BLUE, &|sample| !sample.is_inside));
-            if let Some(motion) = motion(&samples, normal) {
-                let size = field.bounds().size().length();
-                let start = field.bounds().center() + 0.02 * size * normal;
-                let arrow = [(start, start + 0.22 * size * motion)];
-                panel = panel.with(Body::arrows(&arrow, 0.006 * size, GREEN));
+            if let Some((middle, motion)) = motion(&samples, normal) {
+                let size = ARROWS * spacing;
+                let start = middle + 0.02 * size * normal;
+                let arrow = [(start, start + 0.3 * size * motion)];
+                panel = panel.with(Body::arrows(&arrow, 0.008 * size, GREEN));
             }
         }
         Colors::BySpeed => {
@@ -128,14 +128,15 @@ struct Sample {
     is_inside: bool,
 }
 
-fn spacing(bounds: Aabb) -> f64 {
-    bounds.size().max_element() / ARROWS
+/// Distance between arrows on the plane through the middle of `bounds`.
+fn spacing(bounds: Aabb, normal: DVec3) -> f64 {
+    let (across, up) = normal.any_orthonormal_pair();
+    [across, up].map(|axis| axis.abs().dot(bounds.size())).into_iter().fold(0.0, f64::max) / ARROWS
 }
 
 /// The field on a grid of the plane through the middle of its support, where it is not zero.
-fn section(field: &dyn Field, normal: DVec3) -> Vec<Sample> {
+fn section(field: &dyn Field, normal: DVec3, spacing: f64) -> Vec<Sample> {
     let bounds = field.bounds();
-    let spacing = spacing(bounds);
     let reach = (0.5 * bounds.size().length() / spacing).ceil() as i32;
     let (across, up) = normal.any_orthonormal_pair();
     let points: Vec<DVec3> = (-reach..=reach)
@@ -161,13 +162,14 @@ fn core_speed(samples: &[Sample]) -> f64 {
     samples.iter().filter(|sample| sample.is_inside).map(|sample| sample.velocity.length()).fold(0.0, f64::max)
 }
 
-/// Mean direction of the tool's motion in the section; none where it only turns or moves across.
-fn motion(samples: &[Sample], normal: DVec3) -> Option<DVec3> {
-    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+/// Middle of the tool in the section, and the mean direction of its motion there; none where it only turns or moves across.
+fn motion(samples: &[Sample], normal: DVec3) -> Option<(DVec3, DVec3)> {
+    let (mut middle, mut velocity, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for sample in samples.iter().filter(|sample| sample.is_inside) {
-        sum += sample.velocity.reject_from_normalized(normal);
+        middle += sample.point;
+        velocity += sample.velocity.reject_from_normalized(normal);
         count += 1.0;
     }
-    let mean = sum / f64::max(count, 1.0);
-    (mean.length() > 0.1 * core_speed(samples)).then(|| mean.normalize())
+    let count = f64::max(count, 1.0);
+    (velocity.length() > 0.1 * count * core_speed(samples)).then(|| (middle / count, velocity.normalize()))
 }
