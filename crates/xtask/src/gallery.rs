@@ -63,7 +63,7 @@ const DEFORMATIONS: [Figure; 18] = [
     Figure {
         number: "11.7",
         shows: "A shape, the reach of its field, and an offset surface within, cut open",
-        recipes: &[],
+        recipes: &["knight"],
         drawings: &["shells_knight"],
     },
     Figure {
@@ -82,7 +82,7 @@ const DEFORMATIONS: [Figure; 18] = [
     Figure {
         number: "12.2",
         shows: "Reach of a field that depends on a radius, and of one that depends on the shape",
-        recipes: &[],
+        recipes: &["knight"],
         drawings: &["shells_reach"],
     },
     Figure {
@@ -169,7 +169,7 @@ fn recipe_file(recipe: &str) -> PathBuf {
 #[test]
 fn every_figure_has_what_it_is_made_of() {
     for figure in &DEFORMATIONS {
-        assert!(!(figure.recipes.is_empty() && figure.drawings.is_empty()), "{}", figure.number);
+        assert!(!figure.recipes.is_empty(), "{}", figure.number);
         for recipe in figure.recipes {
             assert!(recipe_file(recipe).is_file(), "{recipe}");
         }

@@ -23,9 +23,7 @@ pub(super) fn write(folder: &Path) -> TaskResult<String> {
         for name in figure.drawings.iter().chain(figure.recipes) {
             picture(&mut page, folder, name, figure.shows)?;
         }
-        if !figure.recipes.is_empty() {
-            facts(&mut page, folder, figure.recipes)?;
-        }
+        facts(&mut page, folder, figure.recipes)?;
     }
     page.push_str("\n## Table 13.1 Six cases\n\nLeft as measured here, right as the thesis prints them.\n\n");
     page.push_str(&fs::read_to_string(folder.join("collision_table.md"))?);
