@@ -45,7 +45,7 @@ const DEFORMATIONS: [Figure; 18] = [
     Figure {
         number: "11.4",
         shows: "Field across a strip on a section, the wire that it pushes into a slab, and a spine that changes its shape",
-        recipes: &["strip_across", "snake"],
+        recipes: &["strip_across", "slither"],
         drawings: &["field_strip_across"],
     },
     Figure {
@@ -172,6 +172,8 @@ fn every_figure_has_what_it_is_made_of() {
         assert!(!figure.recipes.is_empty(), "{}", figure.number);
         for recipe in figure.recipes {
             assert!(recipe_file(recipe).is_file(), "{recipe}");
+            // Both leave a picture of that name in the same folder.
+            assert!(FRAMES.iter().all(|(name, _)| name != recipe) && !figure.drawings.contains(recipe), "{recipe}");
         }
     }
 }

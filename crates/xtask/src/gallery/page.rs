@@ -25,7 +25,8 @@ pub(super) fn write(folder: &Path) -> TaskResult<String> {
         }
         facts(&mut page, folder, figure.recipes)?;
     }
-    page.push_str("\n## Table 13.1 Six cases\n\nLeft as measured here, right as the thesis prints them.\n\n");
+    page.push_str("\n## Table 13.1 Six cases\n\nLeft as measured here, right as the thesis prints them. A frame here is a step on one \
+         core that passes over what the tool does not reach; the thesis' frames are also drawn.\n\n");
     page.push_str(&fs::read_to_string(folder.join("collision_table.md"))?);
     page.push_str("\n# Frames\n");
     for (name, shows) in FRAMES {
