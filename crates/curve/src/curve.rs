@@ -109,3 +109,14 @@ impl CurveJet {
         self.curvature_vector().try_normalize()
     }
 }
+
+/// The jet of a curve of `segments`, at least one, at the number of a segment plus the parameter inside it.
+pub(crate) fn jet_of_segments(segments: &[impl Curve], parameter: f64) -> CurveJet {
+    let segment = (parameter.max(0.0) as usize).min(segments.len() - 1);
+    segments[segment].jet(parameter - segment as f64)
+}
+
+/// The parameters where the segments of such a curve meet, ends included.
+pub(crate) fn joints(segments: usize) -> Vec<f64> {
+    (0..=segments).map(|segment| segment as f64).collect()
+}

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{MoebiusSegment, Tilt};
+use crate::curve::{jet_of_segments, joints};
 use crate::{Curve, CurveJet, Frame, FrameError, HermiteError, Spine, uniform_parameters};
 
 /// Rational curves of degree six with continuous tangent and a continuous rational rotation-minimizing frame.
@@ -87,9 +88,7 @@ impl Curve for MoebiusSpline {
     }
 
     fn jet(&self, parameter: f64) -> CurveJet {
-        let last = self.segments.len() - 1;
-        let segment = (parameter.max(0.0) as usize).min(last);
-        self.segments[segment].jet(parameter - segment as f64)
+        jet_of_segments(&self.segments, parameter)
     }
 
     fn is_closed(&self) -> bool {
@@ -97,6 +96,6 @@ impl Curve for MoebiusSpline {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        (0..=self.segments.len()).map(|i| i as f64).collect()
+        joints(self.segments.len())
     }
 }

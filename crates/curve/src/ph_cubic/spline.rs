@@ -1,6 +1,7 @@
 //! Splines of Pythagorean-hodograph cubics that follow a curve to a tolerance.
 
 use super::{HermiteError, PhCubic, PhCubicError};
+use crate::curve::{jet_of_segments, joints};
 use crate::quadrature::gauss;
 use crate::{Curve, CurveJet, Frame, FrameError, Spine, orthogonal_reference};
 
@@ -201,9 +202,7 @@ impl Curve for PhSpline {
     }
 
     fn jet(&self, parameter: f64) -> CurveJet {
-        let last = self.segments.len() - 1;
-        let segment = (parameter.max(0.0) as usize).min(last);
-        self.segments[segment].jet(parameter - segment as f64)
+        jet_of_segments(&self.segments, parameter)
     }
 
     fn is_closed(&self) -> bool {
@@ -211,7 +210,7 @@ impl Curve for PhSpline {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        (0..=self.segments.len()).map(|i| i as f64).collect()
+        joints(self.segments.len())
     }
 }
 

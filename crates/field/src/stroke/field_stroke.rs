@@ -9,7 +9,10 @@ use std::sync::Arc;
 use glam::DVec3;
 use isochore_mesh::{Aabb, LANES, PointBlock};
 
-use super::{StrokeError, movement::MAX_STEPS};
+use super::{
+    StrokeError,
+    movement::{MAX_STEPS, SLEEP_SLACK},
+};
 use crate::{
     Field, Mask, MovingField,
     field::{FieldBlock, NO_CORE},
@@ -18,10 +21,6 @@ use crate::{
     pose::Placement,
     rk4::rk4_step,
 };
-
-/// Clearance that is given away to rounding when a point goes to sleep, as a share of the coordinates at hand.
-/// Larger wakes points needlessly early; smaller than some units of f64 rounding could let a sleeping point miss the support.
-const SLEEP_SLACK: f64 = 1e-12;
 
 /// Fields that act one after the other, each over its own time.
 #[derive(Debug, Clone)]

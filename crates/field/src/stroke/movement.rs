@@ -21,7 +21,7 @@ pub(super) const MAX_STEPS: usize = 1_000_000;
 
 /// Clearance that is given away to rounding when a point goes to sleep, as a share of the coordinates at hand.
 /// Larger wakes points needlessly early; smaller than some units of f64 rounding could let a sleeping point miss the support.
-const SLEEP_SLACK: f64 = 1e-12;
+pub(super) const SLEEP_SLACK: f64 = 1e-12;
 
 /// A tool's way through a list of poses.
 #[derive(Debug, Clone)]
