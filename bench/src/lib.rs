@@ -3,9 +3,15 @@
 
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
+mod comparison;
+mod python_peer;
+
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
+
+pub use comparison::{Comparison, ROWS_VARIABLE};
+pub use python_peer::{PythonPeer, scratch};
 
 /// Rounds of every measurement, after one that warms up.
 const ROUNDS: usize = 9;
@@ -42,12 +48,19 @@ pub fn median(seconds: &mut [f64]) -> f64 {
     seconds[seconds.len() / 2]
 }
 
-/// Runs `work` on one thread, whatever the machine has.
+/// Runs `work` on one thread that keeps to one core, as do the threads and programs that it starts, whatever the machine has.
 ///
 /// # Panics
 /// If the system refuses a thread.
-pub fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started").install(work)
+pub fn on_one_core<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let pin = |_| {
+        // The first core has more to do for the system. Where cores cannot be chosen, one thread is all that can be had.
+        if let Some(core) = core_affinity::get_core_ids().and_then(|cores| cores.last().copied()) {
+            core_affinity::set_for_current(core);
+        }
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).start_handler(pin).build();
+    pool.expect("a thread can be started").install(work)
 }
 
 /// Prints a row of cells, each right-aligned in its column.

@@ -5,12 +5,12 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use isochore_bench::{interleaved_medians, on_one_thread, print_row};
+use isochore_bench::{interleaved_medians, on_one_core, print_row};
 use isochore_field::{Move, Pose, Profile, Stroke, Tool, flow_points};
 use isochore_mesh::{Silent, Sphere, primitives};
 
 fn main() {
-    on_one_thread(|| {
+    on_one_core(|| {
         print_row(["triangles", "frames/s", "thesis frames/s", "ratio", "M vertex-steps/s"]);
         for (longitude, latitude, thesis) in [(80, 71, 78.0), (140, 121, 39.0), (150, 146, 30.0)] {
             let object = primitives::latitude_longitude_sphere(1.0, longitude, latitude);

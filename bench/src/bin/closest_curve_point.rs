@@ -2,14 +2,14 @@
 //! nearest of a thousand samples of the spline, whose error is in the last column.
 
 use glam::DVec3;
-use isochore_bench::{interleaved_medians, on_one_thread, print_row};
+use isochore_bench::{interleaved_medians, on_one_core, print_row};
 use isochore_curve::{ClosestPoint, CubicSpline, Curve, EndCondition, Parametrization};
 
 const QUERIES: usize = 20_000;
 const SAMPLES: usize = 1_000;
 
 fn main() {
-    on_one_thread(|| {
+    on_one_core(|| {
         print_row(["points", "queries", "M queries/s", "1000 samples M/s", "ratio", "samples' error"]);
         for count in [4, 16, 64] {
             // A knot-like curve of turning and returning parts.

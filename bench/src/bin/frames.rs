@@ -2,7 +2,7 @@
 //! single precision, beside a plain loop as the paper prints it (W. Wang et al., 2008, table I).
 
 use glam::DVec3;
-use isochore_bench::{interleaved_medians, on_one_thread, print_row};
+use isochore_bench::{interleaved_medians, on_one_core, print_row};
 use isochore_curve::{
     CURVES_ABREAST, FrameMethod, Spine, SpinesAbreast, TrigonometricCurve, rotation_minimizing_frames,
 };
@@ -11,7 +11,7 @@ use isochore_curve::{
 const SEGMENTS: [usize; 2] = [1_000, 100_000];
 
 fn main() {
-    on_one_thread(|| {
+    on_one_core(|| {
         print_row(["segments", "plain M/s", "one curve M/s", "ratio", "16 abreast M/s", "ratio"]);
         for segments in SEGMENTS {
             measure(segments);

@@ -4,14 +4,14 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use isochore_bench::{interleaved_medians, on_one_thread, print_row};
+use isochore_bench::{interleaved_medians, on_one_core, print_row};
 use isochore_field::{
     DeformOptions, Move, Pose, Profile, RefineOptions, Stroke, Tool, deform, flow_points, rotation_from_vector,
 };
 use isochore_mesh::{Capsule, Distance, Silent, Sphere, primitives};
 
 fn main() {
-    on_one_thread(|| {
+    on_one_core(|| {
         print_row(["stroke", "volume asked", "triangles", "drift", "M triangles/s", "times the limit"]);
         for (name, stroke) in [("press", press()), ("rod", rod())] {
             for volume in [1e-3, 1e-4, 1e-5] {

@@ -4,6 +4,7 @@
 
 #[cfg(test)]
 mod arrows;
+mod bench;
 mod data;
 mod gallery;
 mod oracle;
@@ -16,12 +17,17 @@ use shell::TaskResult;
 
 type Task = (&'static str, &'static str, fn() -> TaskResult);
 
-const TASKS: [Task; 4] = [
+const TASKS: [Task; 5] = [
     ("test", "formatting, lints, all tests, then the oracle: what must pass before a change goes in", test::run_all),
     (
         "oracle",
         "compare what recipes write with PyMeshLab and libigl, installed into the target folder",
         oracle::run_judges,
+    ),
+    (
+        "bench",
+        "run the programs of the folder `bench`, or those named, and write the table of the README",
+        bench::measure_all,
     ),
     ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
     ("gallery", "run all recipes and examples of the figures, and show them in gallery/gallery.md", gallery::draw_all),

@@ -9,7 +9,7 @@ mod stages;
 use std::time::Instant;
 
 use glam::dvec3;
-use isochore_bench::{cpu_seconds, median, on_one_thread, print_row};
+use isochore_bench::{cpu_seconds, median, on_one_core, print_row};
 use isochore_mesh::primitives::latitude_longitude_sphere;
 use isochore_mesh::{DistanceField, DistanceFieldOptions, Silent, TriMesh, io};
 use peers::PEERS;
@@ -41,7 +41,7 @@ fn main() {
         None => rugged(220, 160),
     };
     let fine = rugged(880, 640);
-    on_one_thread(|| {
+    on_one_core(|| {
         println!("peers answer every {STRIDE}th row; differences over the size of the mesh");
         compare(&mesh, 64);
         compare(&mesh, 128);
