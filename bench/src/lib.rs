@@ -4,6 +4,7 @@
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
 mod comparison;
+mod memory;
 mod python_peer;
 
 use std::time::Instant;
@@ -11,6 +12,7 @@ use std::time::Instant;
 use cpu_time::ProcessTime;
 
 pub use comparison::{Comparison, ROWS_VARIABLE};
+pub use memory::peak_bytes;
 pub use python_peer::{PythonPeer, scratch};
 
 /// Rounds of every measurement, after one that warms up.

@@ -1,5 +1,5 @@
 //! Building a distance grid, against asking general libraries for one node after the other. Seconds are those that threads
-//! worked; one core, unless a table says otherwise. An argument names a mesh to measure instead of the generated one.
+//! worked; one core, unless a table says otherwise. An argument names a mesh to measure instead of the generated ones.
 
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
@@ -9,18 +9,18 @@ mod stages;
 use std::time::Instant;
 
 use glam::dvec3;
-use isochore_bench::{cpu_seconds, median, on_one_core, print_row};
+use isochore_bench::{Comparison, median, on_one_core, peak_bytes, print_row};
 use isochore_mesh::primitives::latitude_longitude_sphere;
 use isochore_mesh::{DistanceField, DistanceFieldOptions, Silent, TriMesh, io};
-use peers::PEERS;
+use peers::{Round, Task};
 use stages::{Stages, build};
 
 /// Rounds of each measurement, after one that warms up.
 const ROUNDS: usize = 7;
 
-/// Every so many rows of nodes are asked of other libraries, or a round would take minutes. Whole rows, because neighbors find what
-/// they need in the cache. Coprime to the sides of the grids, so that they lie everywhere.
-const STRIDE: usize = 17;
+/// Nodes that other libraries are asked for in a round, or it would take minutes: in whole layers, because neighbors find what they
+/// need in the cache.
+const NODES_ASKED: usize = 30_000;
 
 /// Closer to the surface than this, over the size of the mesh, a sign is a matter of rounding.
 const ON_SURFACE: f64 = 1e-6;
@@ -42,7 +42,7 @@ fn main() {
     };
     let fine = rugged(880, 640);
     on_one_core(|| {
-        println!("peers answer every {STRIDE}th row; differences over the size of the mesh");
+        println!("differences from double precision, over the size of the mesh");
         compare(&mesh, 64);
         compare(&mesh, 128);
         compare(&fine, 64);
@@ -56,72 +56,97 @@ fn main() {
         print_row(["triangles", "cells", "band", "hierarchy", "distance", "signs", "spline"]);
         alone(&with_holes(mesh.clone(), 1000), f64::INFINITY);
     });
-    println!("\nseconds by the clock on one and two threads");
-    print_row(["triangles", "cells", "one", "two", "ratio"]);
+    println!("\nseconds by the clock");
+    Comparison::print_heading();
     two_threads(&mesh, 128);
+    two_threads(&fine, 64);
 }
 
 /// All peers and the distance field in turn.
 fn compare(mesh: &TriMesh, resolution: usize) {
     let options = DistanceFieldOptions { resolution, ..Default::default() };
-    let field = DistanceField::new(mesh, &options, &Silent).expect("a sound mesh");
+    let (field, peak) = peak_bytes(|| DistanceField::new(mesh, &options, &Silent).expect("a sound mesh"));
+    let count = field.grid().len();
     let [nx, ny, nz] = field.grid().dims;
-    let nodes: Vec<usize> = (0..ny * nz).step_by(STRIDE).flat_map(|row| row * nx..(row + 1) * nx).collect();
-    let mut ours = Vec::new();
-    let mut theirs = [const { Vec::new() }; PEERS.len()];
-    let mut answers = [const { Vec::new() }; PEERS.len()];
-    for round in 0..=ROUNDS {
-        let (_, stages) = build(mesh, &options);
-        let work = PEERS.each_ref().map(|peer| {
-            let begin = cpu_seconds();
-            let query = (peer.build)(mesh);
-            let built = cpu_seconds();
-            let answers: Vec<f64> = nodes.iter().map(|&node| query(field.grid().node_at(node))).collect();
-            (built - begin, cpu_seconds() - built, answers)
-        });
-        if round > 0 {
-            ours.push(stages);
+    let layer_step = (count / NODES_ASKED).max(1);
+    let layers = nz / layer_step;
+    let first_layer = (nz - (layers - 1) * layer_step) / 2;
+    let task = Task { mesh, grid: field.grid(), first_layer, layer_step, layers };
+
+    let mut peers = peers::all();
+    peers.retain_mut(|peer| match peer.prepare(&task) {
+        Ok(()) => true,
+        Err(reason) => {
+            println!("without {}: {reason}", peer.name());
+            false
         }
-        for (i, (build, query, answered)) in work.into_iter().enumerate() {
-            if round > 0 {
-                theirs[i].push((build, query));
-            }
-            answers[i] = answered;
+    });
+    let mut ours = Vec::new();
+    let mut theirs: Vec<Vec<Round>> = peers.iter().map(|_| Vec::new()).collect();
+    for _ in 0..=ROUNDS {
+        ours.push(build(mesh, &options).1);
+        for (peer, rounds) in peers.iter_mut().zip(&mut theirs) {
+            rounds.push(peer.round(&task).unwrap_or_else(|reason| panic!("{}: {reason}", peer.name())));
         }
     }
 
-    let count = field.samples().len() as f64;
-    let of_ours = |part: fn(&Stages) -> f64| median(&mut ours.iter().map(part).collect::<Vec<_>>());
-    let (hierarchy, spline) = (of_ours(|stages| stages.hierarchy), of_ours(|stages| stages.spline));
-    let own = of_ours(|stages| stages.distance + stages.signs);
+    let of_ours = |part: fn(&Stages) -> f64| median(&mut ours[1..].iter().map(part).collect::<Vec<_>>());
+    let hierarchy = of_ours(|stages| stages.hierarchy);
+    let node = of_ours(|stages| stages.distance + stages.signs) / count as f64;
     println!();
-    print_row(["triangles", "cells", "nodes", "hierarchy ms", "ns/node", "spline ns/node"]);
+    print_row([
+        "triangles",
+        "cells",
+        "nodes",
+        "hierarchy ms",
+        "distance ns/node",
+        "signs ns/node",
+        "spline ns/node",
+        "peak MB",
+    ]);
+    let nanoseconds = |seconds: f64| format!("{:.1}", 1e9 * seconds / count as f64);
     print_row([
         &mesh.triangles.len().to_string(),
         &resolution.to_string(),
-        &field.samples().len().to_string(),
+        &format!("{nx} x {ny} x {nz}"),
         &format!("{:.1}", 1e3 * hierarchy),
-        &format!("{:.0}", 1e9 * own / count),
-        &format!("{:.0}", 1e9 * spline / count),
+        &nanoseconds(of_ours(|stages| stages.distance)),
+        &nanoseconds(of_ours(|stages| stages.signs)),
+        &nanoseconds(of_ours(|stages| stages.spline)),
+        &peak.map_or("?".into(), |bytes| format!("{:.0}", 1e-6 * bytes as f64)),
     ]);
-    print_row(["peer", "hierarchy ms", "ns/node", "ratio", "with hierarchy", "max difference", "other signs"]);
+    let thousands = mesh.triangles.len() / 1000;
+    let job = format!("signed distance grid, {thousands}k triangles, {resolution} cells");
+    let own: Vec<f64> = task.nodes().map(|node| f64::from(field.samples()[node])).collect();
+    let exact = theirs[0][0].distances.clone();
     let size = mesh.bounds().size().max_element();
-    for (peer, (theirs, answers)) in PEERS.iter().zip(theirs.iter().zip(&answers)) {
-        let build = median(&mut theirs.iter().map(|work| work.0).collect::<Vec<_>>());
-        let query = median(&mut theirs.iter().map(|work| work.1).collect::<Vec<_>>()) / nodes.len() as f64;
-        let pairs = || nodes.iter().map(|&node| f64::from(field.samples()[node])).zip(answers.iter().copied());
-        let error = pairs().map(|(ours, answer)| (ours.abs() - answer.abs()).abs()).fold(0.0, f64::max);
-        let turned = pairs().filter(|(ours, answer)| ours * answer < 0.0 && ours.abs() > ON_SURFACE * size).count();
-        print_row([
-            peer.name,
-            &format!("{:.1}", 1e3 * build),
-            &format!("{:.0}", 1e9 * query),
-            &format!("{:.1}", query * count / own),
-            &format!("{:.1}", (build + query * count) / (hierarchy + own)),
-            &format!("{:.1e}", error / size),
-            &turned.to_string(),
-        ]);
+    let judge = |distances: &[f64]| {
+        let pairs = || distances.iter().zip(&exact);
+        let error = pairs().map(|(d, exact)| (d.abs() - exact.abs()).abs()).fold(0.0, f64::max) / size;
+        let turned = pairs().filter(|&(d, exact)| d * exact < 0.0 && exact.abs() > ON_SURFACE * size).count();
+        (format!("{error:.0e}"), turned.to_string())
+    };
+    Comparison::print_heading();
+    let mut rows = Vec::new();
+    for (peer, rounds) in peers.iter().zip(&theirs) {
+        let of_theirs = |part: fn(&Round) -> f64| median(&mut rounds[1..].iter().map(part).collect::<Vec<_>>());
+        let (build, query) = (of_theirs(|round| round.build), of_theirs(|round| round.query));
+        let ((error, turned), (their_error, their_turned)) = (judge(&own), judge(&rounds[0].distances));
+        let their_turned = if peer.has_signs() { their_turned } else { "untold".into() };
+        let accuracy = format!("error {error} / {their_error}, wrong signs {turned} / {their_turned}");
+        let row = |job: &str, unit: &str, ours: f64, theirs: f64| Comparison {
+            job: job.into(),
+            peer: peer.name().into(),
+            unit: unit.into(),
+            ours,
+            theirs,
+            accuracy: accuracy.clone(),
+        };
+        row(&job, "ns/node", 1e9 * node, 1e9 * query).report();
+        let whole = |build: f64, node: f64| 1e3 * (build + node * count as f64);
+        rows.push(row(&format!("{job}, with preparation"), "ms", whole(hierarchy, node), whole(build, query)));
     }
+    rows.iter().for_each(Comparison::report);
 }
 
 /// Stages of one field at 128 cells, with a band of so many cells.
@@ -167,12 +192,18 @@ fn two_threads(mesh: &TriMesh, resolution: usize) {
             seconds.push(begin.elapsed().as_secs_f64());
         }
     }
-    let [one, two] = seconds.map(|mut seconds| median(&mut seconds[1..]));
-    print_row([
-        &mesh.triangles.len().to_string(),
-        &resolution.to_string(),
-        &format!("{one:.3}"),
-        &format!("{two:.3}"),
-        &format!("{:.2}", one / two),
-    ]);
+    // Whatever else runs on the machine can only add to the time.
+    let [one, two] = seconds.map(|seconds| seconds.into_iter().fold(f64::INFINITY, f64::min));
+    let row = Comparison {
+        job: format!(
+            "the same on two cores, {}k triangles, {resolution} cells, by the clock",
+            mesh.triangles.len() / 1000
+        ),
+        peer: "isochore on one core".into(),
+        unit: "ms".into(),
+        ours: 1e3 * two,
+        theirs: 1e3 * one,
+        accuracy: "equal bits".into(),
+    };
+    row.report();
 }

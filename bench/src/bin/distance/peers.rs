@@ -1,46 +1,71 @@
-use glam::DVec3;
-use isochore_mesh::TriMesh;
-use parry3d::math::Vector as Vector32;
-use parry3d::query::PointQuery as _;
-use parry3d::shape::{TriMesh as Parry32, TriMeshFlags as Flags32};
-use parry3d_f64::math::Vector as Vector64;
-use parry3d_f64::query::PointQuery as _;
-use parry3d_f64::shape::{TriMesh as Parry64, TriMeshFlags as Flags64};
+//! Other libraries that tell signed distances to meshes.
 
-/// A library that answers one signed distance at a time.
-pub(crate) struct Peer {
-    pub(crate) name: &'static str,
-    /// Prepares the mesh.
-    pub(crate) build: fn(&TriMesh) -> Query,
+mod in_python;
+mod in_rust;
+
+use isochore_mesh::{Grid, TriMesh};
+
+use in_python::InPython;
+use in_rust::{MeshToSdf, Parry32, Parry64};
+
+/// What the peers are asked: distances at some nodes of a grid.
+#[derive(Debug)]
+pub(crate) struct Task<'a> {
+    pub(crate) mesh: &'a TriMesh,
+    pub(crate) grid: &'a Grid,
+    /// The layers of nodes that they are asked for, numbers along z: each so far from the one before.
+    pub(crate) first_layer: usize,
+    pub(crate) layer_step: usize,
+    pub(crate) layers: usize,
 }
 
-/// The signed distance to a prepared mesh.
-pub(crate) type Query = Box<dyn Fn(DVec3) -> f64>;
-
-/// All of them: exact, with signs, from pseudonormals, which is their fastest way.
-pub(crate) const PEERS: [Peer; 2] =
-    [Peer { name: "parry3d f32", build: parry32 }, Peer { name: "parry3d f64", build: parry64 }];
-
-fn parry32(mesh: &TriMesh) -> Query {
-    let vector = |p: DVec3| Vector32::new(p.x as f32, p.y as f32, p.z as f32);
-    let points = mesh.positions.iter().map(|&p| vector(p)).collect();
-    let peer = Parry32::with_flags(points, mesh.triangles.clone(), Flags32::ORIENTED).expect("a sound mesh");
-    Box::new(move |point| {
-        let point = vector(point);
-        let projection = peer.project_local_point(point, false);
-        let distance = f64::from((projection.point - point).length());
-        if projection.is_inside { -distance } else { distance }
-    })
+impl Task<'_> {
+    /// Indices of the nodes, x fastest.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = usize> {
+        let size = self.grid.dims[0] * self.grid.dims[1];
+        (0..self.layers).flat_map(move |layer| {
+            let start = (self.first_layer + layer * self.layer_step) * size;
+            start..start + size
+        })
+    }
 }
 
-fn parry64(mesh: &TriMesh) -> Query {
-    let vector = |p: DVec3| Vector64::new(p.x, p.y, p.z);
-    let points = mesh.positions.iter().map(|&p| vector(p)).collect();
-    let peer = Parry64::with_flags(points, mesh.triangles.clone(), Flags64::ORIENTED).expect("a sound mesh");
-    Box::new(move |point| {
-        let point = vector(point);
-        let projection = peer.project_local_point(point, false);
-        let distance = (projection.point - point).length();
-        if projection.is_inside { -distance } else { distance }
-    })
+/// Seconds of work in a round, and what came of it.
+#[derive(Debug)]
+pub(crate) struct Round {
+    pub(crate) build: f64,
+    /// For a node.
+    pub(crate) query: f64,
+    /// At the nodes of the task.
+    pub(crate) distances: Vec<f64>,
+}
+
+/// A library that tells distances, at its fastest.
+pub(crate) trait Peer {
+    /// With its version.
+    fn name(&self) -> &'static str;
+
+    /// Whether it tells inside from outside.
+    fn has_signs(&self) -> bool {
+        true
+    }
+
+    /// Takes over the mesh and the points, which is not measured.
+    fn prepare(&mut self, task: &Task<'_>) -> Result<(), String>;
+
+    /// Prepares its search structure and asks it for all nodes.
+    fn round(&mut self, task: &Task<'_>) -> Result<Round, String>;
+}
+
+/// All peers that there are on this machine. The first is the one in double precision that the others are compared with.
+pub(crate) fn all() -> Vec<Box<dyn Peer>> {
+    let mut peers: Vec<Box<dyn Peer>> = vec![Box::new(Parry64), Box::new(Parry32)];
+    for library in ["warp", "open3d", "libigl", "meshlib", "fcpw", "pysdf"] {
+        match InPython::start(library) {
+            Ok(peer) => peers.push(Box::new(peer)),
+            Err(reason) => println!("without {library}: {reason}"),
+        }
+    }
+    peers.push(Box::new(MeshToSdf));
+    peers
 }
