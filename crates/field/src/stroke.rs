@@ -3,6 +3,7 @@
 mod bend;
 mod field_stroke;
 mod movement;
+mod reach;
 mod rotation;
 mod stamp;
 mod twist;
@@ -51,7 +52,7 @@ impl Stroke {
     }
 
     /// Whether the stroke may move a point of this ball; false is certain.
-    pub(crate) fn may_touch(&self, center: DVec3, radius: f64) -> bool {
+    pub fn may_touch(&self, center: DVec3, radius: f64) -> bool {
         match self {
             Self::Move(stroke) => stroke.may_touch(center, radius),
             Self::Field(stroke) => stroke.may_touch(center, radius),

@@ -17,8 +17,10 @@ mod closed_mesh;
 mod compensated_sum;
 mod distance;
 mod distance_field;
+mod edit_mesh;
 mod grid_mesh;
 pub mod io;
+mod journaled;
 mod measure;
 mod mesh_distance;
 mod monitor;
@@ -26,6 +28,7 @@ pub mod primitives;
 mod pseudo_normals;
 mod self_intersection;
 mod shapes;
+mod surface_tree;
 mod topology;
 mod tri_mesh;
 mod winding_number;
@@ -39,12 +42,18 @@ pub use closed_mesh::{ClosedMesh, MeshError};
 pub use compensated_sum::{CompensatedSum, sum_terms};
 pub use distance::Distance;
 pub use distance_field::{DistanceField, DistanceFieldError, DistanceFieldOptions, Grid, Padding};
+pub use edit_mesh::{
+    Collapsed, EditDelta, EditMesh, EditMeshError, EditTriangle, Fan, NONE, Split, next as next_half_edge,
+    previous as previous_half_edge,
+};
 pub use grid_mesh::GridMesh;
+pub use journaled::{Delta, Journaled};
 pub use measure::{Components, EdgeLengths, signed_volume};
 pub use mesh_distance::MeshDistance;
 pub use monitor::{Cancelled, Monitor, Silent};
 pub use self_intersection::{SelfIntersectionError, SelfIntersections};
 pub use shapes::{Capsule, Ellipsoid, HalfSpace, RoundedBox, ShapeError, Sphere, Torus};
+pub use surface_tree::{SurfaceHit, SurfaceTree};
 pub use topology::Topology;
 pub use tri_mesh::{CornerAttributes, SubTriangle, Subdivision, TriMesh, VertexAttributes};
 pub use winding_number::WindingNumber;

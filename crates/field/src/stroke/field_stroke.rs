@@ -114,6 +114,11 @@ impl FieldStroke {
         self.legs.iter().any(|leg| leg.may_touch(center, radius))
     }
 
+    /// Box in the world that holds the support at all times.
+    pub(super) fn reach(&self) -> Aabb {
+        self.legs.iter().map(Leg::reach).fold(Aabb::EMPTY, Aabb::union)
+    }
+
     pub(super) fn with_half_step(&self) -> Result<Self, StrokeError> {
         Self::from_spans(self.spans.clone(), 0.5 * self.step)
     }
@@ -222,6 +227,12 @@ impl Leg {
         let steps = (clearance - slack) / (self.approach_speed * self.step_time);
         // A field that stands still comes no closer: infinity means all remaining steps.
         if steps >= 1.0 { (steps as usize).min(self.steps()) } else { 0 }
+    }
+
+    fn reach(&self) -> Aabb {
+        let bounds = self.instants.iter().map(|field| field.bounds()).fold(Aabb::EMPTY, Aabb::union);
+        // Instants are half a step apart, so no time is more than a quarter from one.
+        bounds.expanded(0.25 * self.approach_speed * self.step_time)
     }
 
     fn may_touch(&self, center: DVec3, radius: f64) -> bool {

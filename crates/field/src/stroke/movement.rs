@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use isochore_mesh::{LANES, PointBlock};
+use isochore_mesh::{Aabb, LANES, PointBlock};
 
 use super::StrokeError;
 use crate::{
@@ -113,6 +113,11 @@ impl Move {
     /// Whether the support may touch the ball, as it stands, at any time; false is certain.
     pub(super) fn may_touch(&self, center: DVec3, radius: f64) -> bool {
         self.segments.iter().any(|segment| segment.may_touch(&self.tool, center, radius))
+    }
+
+    /// Box in the world that holds the support at all times.
+    pub(super) fn reach(&self) -> Aabb {
+        self.segments.iter().map(|segment| segment.reach(&self.tool)).fold(Aabb::EMPTY, Aabb::union)
     }
 
     pub(super) fn with_half_step(&self) -> Result<Self, StrokeError> {
@@ -259,6 +264,18 @@ impl Segment {
     /// change. A tool without end has no other bound.
     fn own_speed(&self, local: DVec3, radius: f64) -> f64 {
         self.twist.velocity(local).length() + self.twist.angular.length() * radius
+    }
+
+    fn reach(&self, tool: &Tool) -> Aabb {
+        let support = tool.support_bounds();
+        let corners =
+            self.placements.iter().flat_map(|placement| support.corners().map(|corner| placement.to_world(corner)));
+        // Between two placements no point of the support is farther from the nearer one than it gets in half a step; and the
+        // stages of a point at rest stray from it as told at `resting_steps`.
+        let travel = self.speed * self.step_time();
+        let bounds = Aabb::of(corners).expanded(travel * (0.5 + self.step_time() * self.twist.angular.length()));
+        // What has no end has none either when it is turned, where its corners are no numbers.
+        if support.size().is_finite() { bounds } else { Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY } }
     }
 
     fn may_touch(&self, tool: &Tool, center: DVec3, radius: f64) -> bool {

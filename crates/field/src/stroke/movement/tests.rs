@@ -267,3 +267,34 @@ fn bad_paths_are_refused() {
         StrokeError::NotFinite("the poses of the path")
     );
 }
+
+#[test]
+fn nothing_moves_beyond_the_reach_and_carrying_has_the_bits_of_the_flow() {
+    let tool = tool(RoundedBox::new(DVec3::new(0.4, 0.2, 0.1), 0.05).unwrap(), 0.3, Profile::Quintic);
+    let turned =
+        Pose { rotation: rotation_from_vector(DVec3::new(0.3, 1.9, 0.4)), translation: DVec3::new(0.9, 0.2, 0.1) };
+    let stroke = Move::new(tool, vec![Pose::IDENTITY, turned], 0.25).unwrap();
+    let reach = stroke.reach();
+    let stroke = crate::Stroke::Move(stroke);
+    let grid =
+        (0..24_usize.pow(3)).map(|i| DVec3::new((i % 24) as f64, (i / 24 % 24) as f64, (i / 576) as f64) * 0.11 - 0.9);
+    let rest: Vec<DVec3> = grid.collect();
+    let mut carried = rest.clone();
+    stroke.carry(&mut carried);
+    assert_eq!(crate::flow_points(&rest, std::slice::from_ref(&stroke), &isochore_mesh::Silent).unwrap(), carried);
+    let (mut inside, mut outside) = (0, 0);
+    for (rest, carried) in rest.iter().zip(&carried) {
+        if rest != carried {
+            assert_eq!(reach.distance(*rest), 0.0, "{rest}");
+            inside += 1;
+        }
+        outside += usize::from(reach.distance(*rest) > 0.0);
+    }
+    assert!(inside > 500 && outside > 500, "{inside} {outside}");
+    // Both are built of the same two ways, so a field in world coordinates reaches as far.
+    let mask = crate::Mask::new(vec![crate::Pin::new(DVec3::X, 0.1, 0.1).unwrap()], None, vec![]).unwrap();
+    let masked = stroke.masked(&Arc::new(mask), Aabb::of(rest.iter().copied()), 0.25).unwrap();
+    let mut carried = rest.clone();
+    masked.carry(&mut carried);
+    assert!(rest.iter().zip(&carried).all(|(rest, carried)| rest == carried || masked.reach().distance(*rest) == 0.0));
+}

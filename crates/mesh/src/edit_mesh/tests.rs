@@ -1,0 +1,131 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::TriMesh;
+use crate::primitives::{box_mesh, icosphere};
+
+/// A square of cells, which has a boundary.
+fn square(cells: u32) -> TriMesh {
+    let at = |x: u32, y: u32| glam::DVec3::new(f64::from(x), f64::from(y), 0.0);
+    let index = |x: u32, y: u32| y * (cells + 1) + x;
+    let positions = (0..=cells).flat_map(|y| (0..=cells).map(move |x| at(x, y))).collect();
+    let cell = |x: u32, y: u32| {
+        let [a, b, c, d] = [index(x, y), index(x + 1, y), index(x + 1, y + 1), index(x, y + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    let triangles = (0..cells).flat_map(|y| (0..cells).flat_map(move |x| cell(x, y))).collect();
+    TriMesh::new(positions, triangles)
+}
+
+fn edit_mesh(mesh: &TriMesh) -> EditMesh {
+    EditMesh::new(&mesh.triangles, mesh.positions.len()).unwrap()
+}
+
+/// What is there, made anew, must agree with what the edits left.
+fn assert_sound(mesh: &EditMesh) {
+    let alive: Vec<[u32; 3]> = mesh.triangles().iter().filter(|t| t.is_alive()).map(|t| t.vertices).collect();
+    assert_eq!(alive.len(), mesh.alive());
+    let anew = EditMesh::new(&alive, mesh.vertex_count()).expect("a sound surface");
+    for (half_edge, triangle) in mesh
+        .triangles()
+        .iter()
+        .enumerate()
+        .filter(|(_, t)| t.is_alive())
+        .flat_map(|(i, t)| (0..3).map(move |s| (3 * i as u32 + s, t)))
+    {
+        let twin = triangle.twins[half_edge as usize % 3];
+        if twin != NONE {
+            assert_eq!((mesh.start(twin), mesh.end(twin)), (mesh.end(half_edge), mesh.start(half_edge)));
+            assert_eq!(mesh.twin(twin), half_edge);
+        }
+    }
+    for vertex in 0..mesh.vertex_count() as u32 {
+        let ring = |mesh: &EditMesh| mesh.neighbors(vertex).collect::<Vec<_>>();
+        let (mut old, mut new) = (ring(mesh), ring(&anew));
+        assert_eq!(mesh.is_boundary(vertex), anew.is_boundary(vertex));
+        old.sort_unstable();
+        new.sort_unstable();
+        assert_eq!(old, new, "around {vertex}");
+        assert!(mesh.fan(vertex).all(|half_edge| mesh.start(half_edge) == vertex));
+    }
+}
+
+/// One edit chosen by two numbers; returns the change of the number of triangles, if it was allowed.
+fn edit(mesh: &mut EditMesh, kind: u8, pick: u32) -> Option<isize> {
+    let half_edge = pick % (3 * mesh.triangles().len() as u32);
+    if !mesh.triangles()[half_edge as usize / 3].is_alive() {
+        return None;
+    }
+    match kind % 3 {
+        0 => Some(if mesh.split(half_edge).far.is_some() { 2 } else { 1 }),
+        1 => mesh.can_flip(half_edge).then(|| {
+            mesh.flip(half_edge);
+            0
+        }),
+        _ => mesh.can_collapse(half_edge).then(|| {
+            mesh.collapse(half_edge);
+            -2
+        }),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn edits_leave_a_sound_surface_and_can_be_undone(
+        closed in any::<bool>(),
+        edits in prop::collection::vec((any::<u8>(), any::<u32>()), 1..80),
+    ) {
+        let mesh = if closed { icosphere(1.0, 1) } else { square(4) };
+        let mut edited = edit_mesh(&mesh);
+        let before = edited.clone();
+        let alive = edited.begin();
+        let mut expected = alive as isize;
+        for (kind, pick) in edits {
+            expected += edit(&mut edited, kind, pick).unwrap_or(0);
+            prop_assert_eq!(edited.alive() as isize, expected);
+        }
+        assert_sound(&edited);
+        let after = (edited.triangles().to_vec(), edited.alive());
+        let mut delta = edited.finish(alive);
+        edited.swap(&mut delta);
+        prop_assert_eq!(edited.triangles(), before.triangles());
+        prop_assert_eq!(edited.alive(), before.alive());
+        assert_sound(&edited);
+        edited.swap(&mut delta);
+        prop_assert_eq!((edited.triangles().to_vec(), edited.alive()), after);
+        assert_sound(&edited);
+    }
+}
+
+#[test]
+fn a_split_keeps_the_corner_numbers_it_promises() {
+    let mut mesh = edit_mesh(&box_mesh(glam::DVec3::ONE, [1, 1, 1]));
+    let (half_edge, twin) = (4, mesh.twin(4));
+    let (start, end) = (mesh.start(half_edge), mesh.end(half_edge));
+    let apexes = [half_edge, twin].map(|side| mesh.start(previous(side)));
+    let split = mesh.split(half_edge);
+    let corners = |triangle: u32| mesh.triangles()[triangle as usize].vertices;
+    assert_eq!(corners(split.near[1]), [split.vertex, end, apexes[0]]);
+    let far = split.far.unwrap();
+    assert_eq!(corners(far[1]), [end, split.vertex, apexes[1]]);
+    assert!(corners(split.near[0]).contains(&start) && corners(far[0]).contains(&start));
+}
+
+#[test]
+fn a_tetrahedron_can_neither_be_collapsed_nor_flipped() {
+    let mesh = EditMesh::new(&[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]], 4).unwrap();
+    assert!((0..12).all(|half_edge| !mesh.can_collapse(half_edge) && !mesh.can_flip(half_edge)));
+}
+
+#[test]
+fn what_is_no_surface_is_refused() {
+    let refused = |triangles: &[[u32; 3]], vertices| EditMesh::new(triangles, vertices).unwrap_err();
+    assert_eq!(refused(&[[0, 1, 1]], 2), EditMeshError::RepeatedVertex { triangle: 0, vertex: 1 });
+    assert_eq!(
+        refused(&[[0, 1, 2], [1, 0, 3], [0, 1, 4]], 5),
+        EditMeshError::NonManifoldEdge { edge: [0, 1], triangles: 3 }
+    );
+    assert_eq!(refused(&[[0, 1, 2], [0, 1, 3]], 4), EditMeshError::Misoriented { edge: [0, 1], triangles: [0, 1] });
+    assert_eq!(refused(&[[0, 1, 2], [0, 3, 4]], 5), EditMeshError::NonManifoldVertex { vertex: 0 });
+}

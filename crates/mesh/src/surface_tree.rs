@@ -1,0 +1,241 @@
+//! A hierarchy of boxes over the triangles of a surface that moves and is edited: boxes are made anew along the ways from what
+//! has changed to the root, and nowhere else.
+
+mod query;
+#[cfg(test)]
+mod tests;
+
+use glam::DVec3;
+
+pub use query::SurfaceHit;
+
+use crate::{Aabb, Bvh, BvhError};
+
+/// Triangles in a leaf when the tree is made. Larger looks at more triangles that are not in question; smaller spends memory
+/// and time on boxes.
+const LEAF_TRIANGLES: u32 = 8;
+
+/// Triangles at which a leaf is cut in two. Less than twice [`LEAF_TRIANGLES`] would cut leaves that have hardly grown.
+const FULL_LEAF: u32 = 16;
+
+const NONE: u32 = u32::MAX;
+
+/// Boxes over triangles, which are told by number; where their corners are, a function tells, which gives none for those that are
+/// not there.
+#[derive(Debug, Clone)]
+pub struct SurfaceTree {
+    nodes: Vec<Node>,
+    /// By triangle the leaf that holds it.
+    leaf_of: Vec<u32>,
+    /// By triangle the next one in its leaf.
+    following: Vec<u32>,
+    /// Whether a node is on the list of those to be made anew.
+    is_due: Vec<bool>,
+    due: Vec<u32>,
+}
+
+/// A box; children come behind their parents and beside each other.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    bounds: Aabb,
+    parent: u32,
+    /// First of the two children, or [`NONE`] for a leaf.
+    child: u32,
+    /// First triangle of a leaf.
+    first: u32,
+    /// Triangles of a leaf.
+    count: u32,
+}
+
+impl SurfaceTree {
+    /// The tree over `triangles`. No triangles at all are a tree, too.
+    ///
+    /// # Errors
+    /// [`BvhError`] for an index out of range or a coordinate that is not finite.
+    pub fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, BvhError> {
+        let mut tree = Self {
+            nodes: vec![Node { bounds: Aabb::EMPTY, parent: NONE, child: NONE, first: NONE, count: 0 }],
+            leaf_of: vec![NONE; triangles.len()],
+            following: vec![NONE; triangles.len()],
+            is_due: Vec::new(),
+            due: Vec::new(),
+        };
+        if !triangles.is_empty() {
+            tree.copy(&Bvh::new(positions, triangles)?);
+        }
+        tree.is_due = vec![false; tree.nodes.len()];
+        let corners = |triangle: u32| Some(triangles[triangle as usize].map(|vertex| positions[vertex as usize]));
+        for node in (0..tree.nodes.len()).rev() {
+            tree.nodes[node].bounds = tree.tight_bounds(node, &corners);
+        }
+        Ok(tree)
+    }
+
+    /// Takes over the nodes of `bvh` down to where few enough triangles are left.
+    fn copy(&mut self, bvh: &Bvh) {
+        let source = bvh.nodes();
+        // Triangles below each node, and the first of them in leaf order.
+        let mut below = vec![(0_u32, 0_u32); source.len()];
+        for (index, node) in source.iter().enumerate().rev() {
+            below[index] = if node.count > 0 {
+                (node.first, node.count)
+            } else {
+                let [left, right] = [0, 1].map(|child| below[node.first as usize + child]);
+                (left.0.min(right.0), left.1 + right.1)
+            };
+        }
+        let mut pending = vec![(0, 0)];
+        while let Some((from, to)) = pending.pop() {
+            let (first, count) = below[from];
+            if count <= LEAF_TRIANGLES || source[from].count > 0 {
+                for &triangle in &bvh.order()[first as usize..(first + count) as usize] {
+                    self.link(triangle, to as u32);
+                }
+            } else {
+                let child = self.add_children(to as u32);
+                pending.extend([0, 1].map(|side| (source[from].first as usize + side, child as usize + side)));
+            }
+        }
+    }
+
+    fn add_children(&mut self, parent: u32) -> u32 {
+        let child = self.nodes.len() as u32;
+        let leaf = Node { bounds: Aabb::EMPTY, parent, child: NONE, first: NONE, count: 0 };
+        self.nodes.extend([leaf; 2]);
+        self.nodes[parent as usize].child = child;
+        child
+    }
+
+    fn link(&mut self, triangle: u32, leaf: u32) {
+        let node = &mut self.nodes[leaf as usize];
+        self.following[triangle as usize] = node.first;
+        self.leaf_of[triangle as usize] = leaf;
+        node.first = triangle;
+        node.count += 1;
+    }
+
+    fn unlink(&mut self, triangle: u32) {
+        let leaf = self.leaf_of[triangle as usize];
+        let after = self.following[triangle as usize];
+        let before = self.of_leaf(leaf).find(|&other| self.following[other as usize] == triangle);
+        match before {
+            Some(before) => self.following[before as usize] = after,
+            None => self.nodes[leaf as usize].first = after,
+        }
+        self.nodes[leaf as usize].count -= 1;
+        self.leaf_of[triangle as usize] = NONE;
+    }
+
+    fn of_leaf(&self, leaf: u32) -> impl Iterator<Item = u32> + '_ {
+        let some = |triangle: u32| (triangle != NONE).then_some(triangle);
+        std::iter::successors(some(self.nodes[leaf as usize].first), move |&triangle| {
+            some(self.following[triangle as usize])
+        })
+    }
+
+    /// Number of triangles, those included that are not there any more.
+    pub fn len(&self) -> usize {
+        self.leaf_of.len()
+    }
+
+    /// Whether there are no triangles.
+    pub fn is_empty(&self) -> bool {
+        self.leaf_of.is_empty()
+    }
+
+    /// Makes the number of triangles `count`: takes in the ones that are new, and lets go those beyond it.
+    pub fn resize(&mut self, count: usize, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) {
+        for triangle in count..self.leaf_of.len() {
+            let leaf = self.leaf_of[triangle];
+            self.unlink(triangle as u32);
+            self.make_due(leaf);
+        }
+        let known = self.leaf_of.len().min(count);
+        self.leaf_of.resize(count, NONE);
+        self.following.resize(count, NONE);
+        for triangle in known..count {
+            self.insert(triangle as u32, corners);
+        }
+    }
+
+    fn insert(&mut self, triangle: u32, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) {
+        let center = corners(triangle).map_or(DVec3::ZERO, |[a, b, c]| (a + b + c) / 3.0);
+        let mut node = 0;
+        while self.nodes[node as usize].child != NONE {
+            let child = self.nodes[node as usize].child;
+            // To the box that must grow least, or the one whose center is nearer.
+            let cost = |index: u32| {
+                let bounds = self.nodes[index as usize].bounds;
+                let off = bounds.center().distance_squared(center);
+                (bounds.distance(center), if off.is_finite() { off } else { f64::INFINITY })
+            };
+            node = if cost(child + 1) < cost(child) { child + 1 } else { child };
+        }
+        self.link(triangle, node);
+        self.make_due(node);
+        if self.nodes[node as usize].count >= FULL_LEAF {
+            self.cut(node, corners);
+        }
+    }
+
+    /// Makes a leaf the parent of two, halved along the longest side of the box of the centers.
+    fn cut(&mut self, leaf: u32, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) {
+        let center = |triangle: u32| corners(triangle).map_or(DVec3::ZERO, |[a, b, c]| (a + b + c) / 3.0);
+        let mut triangles: Vec<(DVec3, u32)> =
+            self.of_leaf(leaf).map(|triangle| (center(triangle), triangle)).collect();
+        let size = Aabb::of(triangles.iter().map(|&(center, _)| center)).size();
+        let axis = size.max_position();
+        triangles.sort_unstable_by(|a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
+        let child = self.add_children(leaf);
+        self.is_due.resize(self.nodes.len(), false);
+        let node = &mut self.nodes[leaf as usize];
+        (node.first, node.count) = (NONE, 0);
+        let half = triangles.len() / 2;
+        for (rank, (_, triangle)) in triangles.into_iter().enumerate() {
+            self.link(triangle, child + u32::from(rank >= half));
+        }
+        self.make_due(child);
+        self.make_due(child + 1);
+    }
+
+    fn make_due(&mut self, leaf: u32) {
+        let mut node = leaf;
+        while node != NONE && !self.is_due[node as usize] {
+            self.is_due[node as usize] = true;
+            self.due.push(node);
+            node = self.nodes[node as usize].parent;
+        }
+    }
+
+    /// Makes the boxes anew that hold any of the triangles `changed`, which have moved, gone, or come back, and those that
+    /// [`resize`](Self::resize) left for this call.
+    pub fn update(&mut self, changed: &[u32], corners: &impl Fn(u32) -> Option<[DVec3; 3]>) {
+        for &triangle in changed {
+            self.make_due(self.leaf_of[triangle as usize]);
+        }
+        let mut due = std::mem::take(&mut self.due);
+        // Children come behind their parents.
+        due.sort_unstable_by(|a, b| b.cmp(a));
+        for &node in &due {
+            self.is_due[node as usize] = false;
+            self.nodes[node as usize].bounds = self.tight_bounds(node as usize, corners);
+        }
+        due.clear();
+        self.due = due;
+    }
+
+    fn tight_bounds(&self, node: usize, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) -> Aabb {
+        let node = &self.nodes[node];
+        match node.child {
+            NONE => Aabb::of(
+                std::iter::successors((node.first != NONE).then_some(node.first), |&triangle| {
+                    let following = self.following[triangle as usize];
+                    (following != NONE).then_some(following)
+                })
+                .filter_map(corners)
+                .flatten(),
+            ),
+            child => self.nodes[child as usize].bounds.union(self.nodes[child as usize + 1].bounds),
+        }
+    }
+}

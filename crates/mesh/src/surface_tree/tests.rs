@@ -1,0 +1,99 @@
+use glam::dvec3;
+use proptest::prelude::*;
+
+use super::*;
+use crate::TriMesh;
+use crate::primitives::icosphere;
+
+fn moved(mesh: &TriMesh, seed: f64) -> TriMesh {
+    let mut mesh = mesh.clone();
+    for (i, position) in mesh.positions.iter_mut().enumerate() {
+        *position = *position * (1.0 + 0.4 * (seed * i as f64 * 0.618_034).fract()) + dvec3(seed, 0.0, 0.3 * seed);
+    }
+    mesh
+}
+
+/// What slow searches over all triangles find.
+struct Slow<'a>(&'a TriMesh, &'a [bool]);
+
+impl Slow<'_> {
+    fn corners(&self, triangle: u32) -> Option<[DVec3; 3]> {
+        self.1[triangle as usize].then(|| self.0.corners(triangle as usize))
+    }
+
+    fn closest(&self, point: DVec3) -> f64 {
+        let all = (0..self.1.len() as u32).filter_map(|triangle| self.corners(triangle));
+        all.map(|corners| crate::bvh::closest_on_triangle(point, &corners).1.sqrt()).fold(f64::INFINITY, f64::min)
+    }
+
+    fn assert_agrees(&self, tree: &SurfaceTree, point: DVec3, direction: DVec3) {
+        let corners = |triangle| self.corners(triangle);
+        let found = tree.closest_point(point, &corners).map_or(f64::INFINITY, |hit| hit.distance);
+        // The same arithmetic on the same triangle.
+        assert_eq!(found, self.closest(point));
+
+        let mut all: Vec<(f64, u32)> = (0..self.1.len() as u32)
+            .filter_map(|triangle| {
+                let mut single = SurfaceTree::new(&[], &[]).unwrap();
+                (single.leaf_of, single.following) = (vec![NONE; self.1.len()], vec![NONE; self.1.len()]);
+                single.link(triangle, 0);
+                single.cast_ray(point, direction, &corners).map(|hit| (hit.distance, triangle))
+            })
+            .collect();
+        all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let hit = tree.cast_ray(point, direction, &corners).map(|hit| (hit.distance, hit.triangle));
+        assert_eq!(hit, all.first().copied());
+
+        let bounds = Aabb { min: point - 0.3, max: point + 0.3 };
+        let mut near = vec![false; self.1.len()];
+        tree.visit_box(bounds, |triangle| near[triangle as usize] = true);
+        for triangle in 0..self.1.len() as u32 {
+            let is_inside = corners(triangle).is_some_and(|corners| corners.iter().any(|&c| bounds.distance(c) == 0.0));
+            assert!(near[triangle as usize] || !is_inside, "triangle {triangle}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn a_tree_that_follows_agrees_with_slow_searches(
+        seed in 0.01..2.0_f64,
+        known in 0..320_usize,
+        gone in prop::collection::vec(0..320_usize, 0..40),
+        point in prop::array::uniform3(-2.0..2.0_f64),
+        direction in prop::array::uniform3(-1.0..1.0_f64),
+    ) {
+        let rest = icosphere(1.0, 2);
+        let mut tree = SurfaceTree::new(&rest.positions, &rest.triangles[..known]).unwrap();
+        let mut alive = vec![true; rest.triangles.len()];
+        {
+            let corners = |triangle: u32| Some(rest.corners(triangle as usize));
+            tree.resize(rest.triangles.len(), &corners);
+            tree.update(&[], &corners);
+        }
+        let mesh = moved(&rest, seed);
+        gone.into_iter().for_each(|triangle| alive[triangle] = false);
+        let slow = Slow(&mesh, &alive);
+        let changed: Vec<u32> = (0..rest.triangles.len() as u32).collect();
+        tree.update(&changed, &|triangle| slow.corners(triangle));
+        slow.assert_agrees(&tree, point.into(), direction.into());
+        // And with fewer triangles again.
+        tree.resize(200, &|triangle| slow.corners(triangle));
+        tree.update(&[], &|triangle| slow.corners(triangle));
+        let fewer = TriMesh::new(mesh.positions.clone(), mesh.triangles[..200].to_vec());
+        Slow(&fewer, &alive[..200]).assert_agrees(&tree, point.into(), direction.into());
+    }
+}
+
+#[test]
+fn a_ray_finds_the_near_side_first() {
+    let mesh = icosphere(1.0, 3);
+    let tree = SurfaceTree::new(&mesh.positions, &mesh.triangles).unwrap();
+    let corners = |triangle: u32| Some(mesh.corners(triangle as usize));
+    let hit = tree.cast_ray(dvec3(0.1, 0.2, 5.0), dvec3(0.0, 0.0, -2.0), &corners).unwrap();
+    // Flat triangles of this size lie at most 1.3 % below the sphere.
+    assert!((hit.point.length() - 1.0).abs() < 0.013 && hit.point.z > 0.9);
+    assert_eq!(tree.cast_ray(dvec3(0.1, 0.2, 5.0), dvec3(0.0, 0.0, 1.0), &corners), None);
+    assert_eq!(tree.cast_ray(dvec3(0.1, 0.2, 5.0), DVec3::ZERO, &corners), None);
+}
