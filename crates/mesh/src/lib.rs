@@ -24,6 +24,7 @@ mod journaled;
 mod measure;
 mod mesh_distance;
 mod monitor;
+mod position_table;
 pub mod primitives;
 mod pseudo_normals;
 mod self_intersection;

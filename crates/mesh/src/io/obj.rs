@@ -1,12 +1,12 @@
 //! Wavefront OBJ.
 //!
-//! Read by the library `tobj`, which gets the statements that bear on the surface. What it does not keep is seen to
-//! here: the order of the vertices and those that no face uses, colors of some vertices only, materials without a
-//! library, corners without attributes, and the line of an error.
+//! Read in one pass, each byte about once: a statement ends at its line, a number where its last digit does. Corners keep
+//! the file's numbers until all vertices are known, because faces may come before them.
 
-mod fault;
+mod contents;
+mod corner;
 mod reader;
-mod statements;
+mod statement;
 mod writer;
 
 pub(super) use reader::parse;

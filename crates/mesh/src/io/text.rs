@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::{LineProblem, ParseError};
 
-/// Words between spaces. A backslash joins lines in OBJ and so is a space too.
+/// Words between spaces.
 pub(super) struct Words<'a> {
     pub(super) rest: &'a [u8],
 }
@@ -13,13 +13,46 @@ impl<'a> Iterator for Words<'a> {
     type Item = &'a [u8];
 
     fn next(&mut self) -> Option<&'a [u8]> {
-        let is_space = |byte: &u8| byte.is_ascii_whitespace() || *byte == b'\\';
-        let start = self.rest.iter().position(|byte| !is_space(byte))?;
-        let word = &self.rest[start..];
-        let end = word.iter().position(is_space).unwrap_or(word.len());
-        self.rest = &word[end..];
-        Some(&word[..end])
+        self.skip_spaces();
+        let end = self.rest.iter().position(is_space).unwrap_or(self.rest.len());
+        let (word, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        (!word.is_empty()).then_some(word)
     }
+}
+
+impl Words<'_> {
+    /// The next word as a finite number; none at the end of the line and before a comment.
+    #[inline]
+    pub(super) fn next_number(&mut self) -> Result<Option<f64>, LineProblem> {
+        self.skip_spaces();
+        // Where a number ends is found by reading it, so that no byte is looked at twice.
+        match fast_float2::parse_partial::<f64, _>(self.rest) {
+            Ok((number, length)) if number.is_finite() && self.rest.get(length).is_none_or(is_space) => {
+                self.rest = &self.rest[length..];
+                Ok(Some(number))
+            }
+            _ => match self.next() {
+                Some([b'#', ..]) | None => Ok(None),
+                Some(word) => Err(LineProblem::NotANumber(text(word))),
+            },
+        }
+    }
+
+    #[inline]
+    pub(super) fn skip_spaces(&mut self) {
+        while let [first, rest @ ..] = self.rest
+            && is_space(first)
+        {
+            self.rest = rest;
+        }
+    }
+}
+
+/// A backslash joins lines in OBJ and so is a space too.
+#[inline]
+pub(super) fn is_space(byte: &u8) -> bool {
+    byte.is_ascii_whitespace() || *byte == b'\\'
 }
 
 /// Lines that hold more than a comment, with their numbers from one.
@@ -32,23 +65,18 @@ pub(super) fn numbered_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Words
 
 /// Up to `N` finite numbers, and how many there are; words after them are passed over.
 pub(super) fn read_numbers<const N: usize>(
-    words: Words<'_>,
+    mut words: Words<'_>,
     expected: usize,
 ) -> Result<([f64; N], usize), LineProblem> {
     let mut numbers = [0.0; N];
-    let mut found = 0;
-    for word in words.take(N) {
-        if word[0] == b'#' {
-            break;
+    for found in 0..N {
+        match words.next_number()? {
+            Some(number) => numbers[found] = number,
+            None if found < expected => return Err(LineProblem::TooFewNumbers { expected, found }),
+            None => return Ok((numbers, found)),
         }
-        let number = fast_float2::parse::<f64, _>(word).ok().filter(|number| number.is_finite());
-        numbers[found] = number.ok_or_else(|| LineProblem::NotANumber(text(word)))?;
-        found += 1;
     }
-    if found < expected {
-        return Err(LineProblem::TooFewNumbers { expected, found });
-    }
-    Ok((numbers, found))
+    Ok((numbers, N))
 }
 
 /// A whole number with an optional minus sign, of ten digits at most.

@@ -1,11 +1,7 @@
 //! Merging vertices that files split at seams.
 
-use std::hash::Hasher;
-
-use glam::DVec3;
-use rustc_hash::FxHasher;
-
-use crate::{Topology, TriMesh};
+use crate::TriMesh;
+use crate::position_table::PositionTable;
 
 impl TriMesh {
     /// This mesh with all vertices at the same position made one, as files need that split vertices at seams.
@@ -27,27 +23,22 @@ impl TriMesh {
     /// # Panics
     /// If an index is out of range.
     pub fn welded_at_boundary(self) -> TriMesh {
-        let topology = Topology::of(&self);
-        let mut at_boundary = vec![false; self.positions.len()];
-        for edge in 0..topology.edges.len() {
-            if topology.half_edges(edge).len() == 1 {
-                topology.edges[edge].iter().for_each(|&vertex| at_boundary[vertex as usize] = true);
-            }
-        }
-        match at_boundary.contains(&true) {
-            true => self.welded_where(|vertex| at_boundary[vertex]),
-            false => self,
+        match vertices_at_boundary(&self.triangles, self.positions.len()) {
+            Some(at_boundary) => self.welded_where(|vertex| at_boundary[vertex]),
+            None => self,
         }
     }
 
     fn welded_where(mut self, is_candidate: impl Fn(usize) -> bool) -> TriMesh {
-        let mut table = PositionTable::of(&self.positions);
-        let mut kept: Vec<u32> = Vec::with_capacity(self.positions.len());
-        let merged: Vec<u32> = (0..self.positions.len())
+        let count = self.positions.len();
+        let mut table = PositionTable::with_capacity((0..count).filter(|&vertex| is_candidate(vertex)).count());
+        let mut kept: Vec<u32> = Vec::with_capacity(count);
+        let merged: Vec<u32> = (0..count)
             .map(|vertex| {
                 let new = kept.len() as u32;
+                let position_of = |number: u32| self.positions[kept[number as usize] as usize];
                 let target = match is_candidate(vertex) {
-                    true => table.find_or_insert(vertex, new),
+                    true => table.find_or_insert(self.positions[vertex], new, position_of),
                     false => new,
                 };
                 if target == new {
@@ -56,7 +47,7 @@ impl TriMesh {
                 target
             })
             .collect();
-        if kept.len() == self.positions.len() {
+        if kept.len() == count {
             return self;
         }
         self.move_differing_colors_to_corners(&merged, &kept);
@@ -106,45 +97,31 @@ impl TriMesh {
     }
 }
 
-/// Vertices by position: a hash table with linear probing of nothing but vertex numbers.
-struct PositionTable<'a> {
-    positions: &'a [DVec3],
-    /// New number of a kept vertex and the vertex itself; [`VACANT`](Self::VACANT) where there is none.
-    slots: Vec<(u32, u32)>,
-    shift: u32,
-}
-
-impl<'a> PositionTable<'a> {
-    const VACANT: (u32, u32) = (u32::MAX, u32::MAX);
-
-    fn of(positions: &'a [DVec3]) -> Self {
-        let size = (2 * positions.len()).next_power_of_two().max(2);
-        Self { positions, slots: vec![Self::VACANT; size], shift: 64 - size.trailing_zeros() }
+/// Which vertices are at an edge of one triangle alone; none where there is no such edge.
+fn vertices_at_boundary(triangles: &[[u32; 3]], vertices: usize) -> Option<Vec<bool>> {
+    // Other ends of the edges at each vertex that lead to a larger one, by counting sort.
+    let sides = || triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).map(|(a, b)| (a.min(b), a.max(b)));
+    let mut ends = vec![0_u32; vertices + 1];
+    sides().for_each(|(smaller, _)| ends[smaller as usize + 1] += 1);
+    (0..vertices).for_each(|vertex| ends[vertex + 1] += ends[vertex]);
+    let mut others = vec![0_u32; 3 * triangles.len()];
+    for (smaller, larger) in sides() {
+        let next = &mut ends[smaller as usize];
+        others[*next as usize] = larger;
+        *next += 1;
     }
-
-    /// The number of the vertex that was first seen at the position of `vertex`: `new` if that is this one.
-    fn find_or_insert(&mut self, vertex: usize, new: u32) -> u32 {
-        let key = self.key(vertex);
-        let mut hasher = FxHasher::default();
-        key.iter().for_each(|&bits| hasher.write_u64(bits));
-        let mut slot = (hasher.finish().wrapping_mul(GOLDEN) >> self.shift) as usize;
-        loop {
-            match self.slots[slot] {
-                Self::VACANT => {
-                    self.slots[slot] = (new, vertex as u32);
-                    return new;
-                }
-                (number, known) if self.key(known as usize) == key => return number,
-                _ => slot = (slot + 1) & (self.slots.len() - 1),
-            }
+    // Each end has moved on to that of its vertex's group.
+    let mut at_boundary = Vec::new();
+    let mut start = 0;
+    for (vertex, &end) in ends[..vertices].iter().enumerate() {
+        let group = &mut others[start..end as usize];
+        start = end as usize;
+        group.sort_unstable();
+        for edge in group.chunk_by(|a, b| a == b).filter(|edge| edge.len() == 1) {
+            at_boundary.resize(vertices, false);
+            at_boundary[vertex] = true;
+            at_boundary[edge[0] as usize] = true;
         }
     }
-
-    /// Bits of the coordinates, the same for both zeros.
-    fn key(&self, vertex: usize) -> [u64; 3] {
-        (self.positions[vertex] + DVec3::ZERO).to_array().map(f64::to_bits)
-    }
+    (!at_boundary.is_empty()).then_some(at_boundary)
 }
-
-/// 2⁶⁴ over the golden ratio: multiplying by it spreads neighbors (Knuth, "The Art of Computer Programming", 6.4).
-const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;

@@ -127,9 +127,9 @@ fn broken_polygons_keep_their_edges() {
     }
 }
 
-/// What the library would change, or mistake for faces.
+/// Vertices that no face uses, attributes of some faces or vertices alone, lines and points between them.
 #[test]
-fn order_and_attributes_survive_the_library() {
+fn order_and_partial_attributes_survive() {
     let mesh = parse_obj(
         "v 9 9 9\nv 0 0 0 0.5 0 0 0.25\nv 1 0 0\nv 0 1 0\nvt 0.5\nvn 1 0 0\no a\nl 2 3 4\np 1\nf 4/1/1 2/1/1 3/1/1\n\
          g b\nusemtl two  words\nv 0 0 1\nf -1 -2 -3 # last\nv 8 8 8\nf 2//1 3//1 5//1\n",
@@ -150,9 +150,9 @@ fn order_and_attributes_survive_the_library() {
     assert_eq!(colors.len(), 6);
 }
 
-/// Indices that the library takes for none, or computes with before it checks them.
+/// Zero, too far back, and longer than any computer word.
 #[test]
-fn indices_that_the_library_mistakes_are_errors() {
+fn indices_of_nothing_are_errors() {
     let error = |corner: &str| {
         let start = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n";
         parse(Format::Obj, &format!("{start}f {corner} 2/1/1 3/1/1\n")).unwrap_err().to_string()
@@ -178,6 +178,14 @@ fn errors_name_the_line() {
     assert_eq!(error("v 0 0\n"), "line 1: 3 numbers expected, 2 found");
     assert_eq!(error(&format!("{start}f 1 2\n")), "line 5: a face needs at least three corners, 2 found");
     assert_eq!(error(&format!("{start}f 1 2 x\n")), "line 5: 'x' is not a face corner (v, v/vt, v//vn or v/vt/vn)");
+    // The vertex comes after the face that counts back from its end, and before one that names too many.
+    let late = format!("{start}f -3 -2 -1\nv 0 0 1\nf 1 2 5\n");
+    assert_eq!(error(&late), "line 7: vertex 5 is out of range: there are 4");
+    assert_eq!(
+        error(&format!("{start}f 1 2 99999999999\n")).split(": ").nth(1),
+        Some("'99999999999' is not a face corner (v, v/vt, v//vn or v/vt/vn)")
+    );
+    assert_eq!(error(&format!("{start}f 1 2 9999999999\n")), "line 5: vertex 9999999999 is out of range: there are 3");
     assert_eq!(error(&format!("{start}f 1/1/1/1 2 3\n")).split(": ").next(), Some("line 5"));
     assert_eq!(error(start), "the file has no triangles");
     assert_eq!(error(""), "the file has no triangles");

@@ -20,7 +20,7 @@ struct Layout<'a> {
     count: usize,
 }
 
-impl Document {
+impl Document<'_> {
     /// Number of components of an accessor's elements.
     pub(super) fn components(&self, index: usize) -> Result<usize, ParseError> {
         match self.accessor(index)?.type_ {
@@ -31,22 +31,46 @@ impl Document {
 
     /// Elements of `N` components each, normalized integers turned to fractions.
     pub(super) fn vectors<const N: usize>(&self, index: usize) -> Result<Vec<[f64; N]>, ParseError> {
+        let is_normalized = self.accessor(index)?.normalized;
+        match self.component(index)?.0 {
+            // Nearly all accessors are such ones, and need not ask of every number what it is.
+            ComponentType::F32 => self.elements(index, single),
+            component => self.elements(index, |bytes| number(component, is_normalized, bytes)),
+        }
+    }
+
+    /// Whole numbers, one an element.
+    pub(super) fn indices(&self, index: usize) -> Result<Vec<u32>, ParseError> {
+        let indices = match self.component(index)?.0 {
+            ComponentType::U32 => self.elements(index, whole)?,
+            component @ (ComponentType::U8 | ComponentType::U16) => {
+                self.elements(index, |bytes| number(component, false, bytes) as u32)?
+            }
+            _ => return Err(malformed(format!("accessor {index} should hold unsigned integers"))),
+        };
+        Ok(indices.into_iter().map(|[value]| value).collect())
+    }
+
+    /// Elements of `N` components each, which `decode` makes of their bytes.
+    fn elements<T: Copy + Default, const N: usize>(
+        &self,
+        index: usize,
+        decode: impl Fn(&[u8]) -> T,
+    ) -> Result<Vec<[T; N]>, ParseError> {
         let accessor = self.accessor(index)?;
         if self.components(index)? != N {
             return Err(malformed(format!("accessor {index} should have {N} components")));
         }
-        let (component, size) = self.component(index)?;
-        let decode = |bytes: &[u8]| -> [f64; N] {
-            std::array::from_fn(|i| number(component, accessor.normalized, &bytes[i * size..]))
-        };
-        let mut vectors = match accessor.buffer_view {
+        let (_, size) = self.component(index)?;
+        let element = |bytes: &[u8]| std::array::from_fn(|i| decode(&bytes[i * size..]));
+        let mut elements = match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
                 let layout = self.layout(index, view.value(), offset, accessor.count.0, N * size)?;
-                (0..layout.count).map(|i| decode(&layout.bytes[i * layout.stride..])).collect()
+                (0..layout.count).map(|i| element(&layout.bytes[i * layout.stride..])).collect()
             }
             None => match usize::try_from(accessor.count.0) {
-                Ok(count) if count <= MAX_IMPLICIT_COUNT => vec![[0.0; N]; count],
+                Ok(count) if count <= MAX_IMPLICIT_COUNT => vec![[T::default(); N]; count],
                 _ => return Err(malformed(format!("accessor {index} has too many elements without data"))),
             },
         };
@@ -61,22 +85,12 @@ impl Document {
             let values = self.layout(index, values.0, values.1, sparse.count.0, N * size)?;
             for i in 0..indices.count {
                 let target = number(kind.0, false, &indices.bytes[i * indices.stride..]) as usize;
-                let slot = vectors.get_mut(target);
+                let slot = elements.get_mut(target);
                 *slot.ok_or_else(|| malformed(format!("accessor {index} has a sparse index out of range")))? =
-                    decode(&values.bytes[i * values.stride..]);
+                    element(&values.bytes[i * values.stride..]);
             }
         }
-        Ok(vectors)
-    }
-
-    /// Whole numbers, one an element.
-    pub(super) fn indices(&self, index: usize) -> Result<Vec<u32>, ParseError> {
-        match self.component(index)?.0 {
-            ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => {
-                Ok(self.vectors::<1>(index)?.into_iter().map(|[value]| value as u32).collect())
-            }
-            _ => Err(malformed(format!("accessor {index} should hold unsigned integers"))),
-        }
+        Ok(elements)
     }
 
     fn accessor(&self, index: usize) -> Result<&Accessor, ParseError> {
@@ -116,18 +130,22 @@ impl Document {
     }
 }
 
+fn single(bytes: &[u8]) -> f64 {
+    f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
+}
+
+fn whole(bytes: &[u8]) -> u32 {
+    u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
+}
+
 fn number(component: ComponentType, is_normalized: bool, bytes: &[u8]) -> f64 {
     let (value, full) = match component {
         ComponentType::I8 => (f64::from(bytes[0] as i8), f64::from(i8::MAX)),
         ComponentType::U8 => (f64::from(bytes[0]), f64::from(u8::MAX)),
         ComponentType::I16 => (f64::from(i16::from_le_bytes([bytes[0], bytes[1]])), f64::from(i16::MAX)),
         ComponentType::U16 => (f64::from(u16::from_le_bytes([bytes[0], bytes[1]])), f64::from(u16::MAX)),
-        ComponentType::U32 => {
-            (f64::from(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])), f64::from(u32::MAX))
-        }
-        ComponentType::F32 => {
-            return f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
-        }
+        ComponentType::U32 => (f64::from(whole(bytes)), f64::from(u32::MAX)),
+        ComponentType::F32 => return single(bytes),
     };
     if is_normalized { (value / full).max(-1.0) } else { value }
 }

@@ -11,7 +11,7 @@ use crate::io::{ParseError, Resolve};
 /// Properties carried word for word.
 const MATERIAL_PROPERTIES: [&str; 4] = ["materials", "textures", "samplers", "extensionsUsed"];
 
-impl Document {
+impl Document<'_> {
     /// Materials with all that they refer to, and the skeleton where the mesh has a skin.
     pub(super) fn carried_assets(
         &self,

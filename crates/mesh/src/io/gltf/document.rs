@@ -1,5 +1,6 @@
 //! The JSON of a document and the buffers that it refers to.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use ::gltf::binary::Glb;
@@ -12,12 +13,12 @@ use serde_json::Value;
 use crate::io::{ParseError, Resolve};
 
 /// A document with its buffers at hand.
-pub(super) struct Document {
+pub(super) struct Document<'a> {
     /// All that the JSON says.
     pub(super) json: Value,
     /// What it says about geometry, in types.
     pub(super) root: Root,
-    buffers: Vec<Vec<u8>>,
+    buffers: Vec<Cow<'a, [u8]>>,
 }
 
 /// Extensions that store geometry in other ways than accessors do.
@@ -28,8 +29,8 @@ const COMPRESSIONS: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_comp
 const OPAQUE: [&str; 8] =
     ["animations", "cameras", "extensions", "extras", "images", "materials", "samplers", "textures"];
 
-impl Document {
-    pub(super) fn open(bytes: &[u8], resolve: Resolve<'_>) -> Result<Self, ParseError> {
+impl<'a> Document<'a> {
+    pub(super) fn open(bytes: &'a [u8], resolve: Resolve<'_>) -> Result<Self, ParseError> {
         let (text, binary) = split(bytes)?;
         let json: Value = serde_json::from_slice(&text).map_err(|error| match error.is_eof() {
             true => malformed("the JSON is truncated"),
@@ -51,7 +52,7 @@ impl Document {
         let mut binary = binary;
         for (number, buffer) in root.buffers.iter().enumerate() {
             let bytes = match &buffer.uri {
-                Some(uri) => load(uri, resolve)?,
+                Some(uri) => load(uri, resolve)?.into(),
                 None => binary.take().ok_or_else(|| malformed(format!("buffer {number} has no data")))?,
             };
             if (bytes.len() as u64) < buffer.byte_length.0 {
@@ -82,9 +83,11 @@ fn usize_range(start: u64, end: u64) -> Option<std::ops::Range<usize>> {
 }
 
 /// The JSON and, of a binary file, the buffer after it.
-fn split(bytes: &[u8]) -> Result<(Vec<u8>, Option<Vec<u8>>), ParseError> {
+type Parts<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
+
+fn split(bytes: &[u8]) -> Result<Parts<'_>, ParseError> {
     if !bytes.starts_with(b"glTF") {
-        return Ok((bytes.to_vec(), None));
+        return Ok((bytes.into(), None));
     }
     let length = bytes.get(8..12).map(|length| u32::from_le_bytes([length[0], length[1], length[2], length[3]]));
     match length {
@@ -97,7 +100,7 @@ fn split(bytes: &[u8]) -> Result<(Vec<u8>, Option<Vec<u8>>), ParseError> {
         Some(_) => {}
     }
     let glb = Glb::from_slice(bytes).map_err(|error| malformed(format!("the binary container is broken: {error}")))?;
-    Ok((glb.json.into_owned(), glb.bin.map(|bin| bin.into_owned())))
+    Ok((glb.json, glb.bin))
 }
 
 /// Bytes that a URI stands for: base64 in itself, or a file beside the document.

@@ -37,12 +37,37 @@ fn common_skin(instances: &[Instance]) -> Option<usize> {
 #[derive(Default)]
 struct Soup {
     positions: Vec<DVec3>,
-    normals: Vec<Option<DVec3>>,
-    uvs: Vec<Vec<DVec2>>,
-    colors: Vec<Option<DVec4>>,
-    influences: Vec<Vec<(u32, f64)>>,
+    /// Zero where the file gives none.
+    normals: Column<DVec3>,
+    uvs: Vec<Column<DVec2>>,
+    colors: Column<DVec4>,
+    influences: Column<Vec<(u32, f64)>>,
     triangles: Vec<[u32; 3]>,
-    materials: Vec<Option<u32>>,
+    materials: Column<Option<u32>>,
+}
+
+/// Values of an attribute, none until an element has one.
+#[derive(Default)]
+struct Column<T>(Vec<T>);
+
+impl<T: Clone> Column<T> {
+    /// Adds the values of the elements from `start` on; those before that had none get `missing`.
+    fn add(&mut self, start: usize, values: Vec<T>, missing: T) {
+        if start == 0 {
+            self.0 = values;
+        } else {
+            self.0.resize(start, missing);
+            self.0.extend(values);
+        }
+    }
+
+    /// One value for each of `count` elements, or none at all.
+    fn complete(mut self, count: usize, missing: T) -> Vec<T> {
+        if !self.0.is_empty() {
+            self.0.resize(count, missing);
+        }
+        self.0
+    }
 }
 
 /// A primitive's attributes by meaning, as numbers of accessors.
@@ -77,7 +102,12 @@ impl Attributes {
 }
 
 impl Soup {
-    fn add_instance(&mut self, document: &Document, instance: &Instance, with_skin: bool) -> Result<(), ParseError> {
+    fn add_instance(
+        &mut self,
+        document: &Document<'_>,
+        instance: &Instance,
+        with_skin: bool,
+    ) -> Result<(), ParseError> {
         let number = instance.mesh;
         let mesh = document.root.meshes.get(number);
         let mesh = mesh.ok_or_else(|| malformed(format!("mesh {number} does not exist")))?;
@@ -110,7 +140,7 @@ impl Soup {
 
     fn add_vertices(
         &mut self,
-        document: &Document,
+        document: &Document<'_>,
         attributes: &Attributes,
         instance: &Instance,
         with_skin: bool,
@@ -129,9 +159,11 @@ impl Soup {
             return Err(malformed("the scene has more vertices than 32-bit indices can name"));
         }
         let to_world = instance.world_from_mesh;
-        self.positions.extend(positions.into_iter().map(|p| to_world.transform_point3(DVec3::from_array(p))));
-
-        self.normals.resize(base + count, None);
+        let place = |position| to_world.transform_point3(DVec3::from_array(position));
+        match base {
+            0 => self.positions = positions.into_iter().map(place).collect(),
+            _ => self.positions.extend(positions.into_iter().map(place)),
+        }
         if let Some(accessor) = attributes.normals {
             let normals = document.vectors::<3>(accessor)?;
             expect(normals.len())?;
@@ -139,45 +171,41 @@ impl Soup {
             let linear = DMat3::from_mat4(to_world);
             let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
             let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * linear.determinant().signum();
-            for (slot, normal) in self.normals[base..].iter_mut().zip(normals) {
-                let normal = DVec3::from_array(normal);
-                *slot = match to_world == glam::DMat4::IDENTITY {
-                    true => Some(normal),
-                    false => (cofactors * normal).try_normalize(),
-                };
-            }
+            let is_in_place = to_world == glam::DMat4::IDENTITY;
+            let turn = |normal| match DVec3::from_array(normal) {
+                normal if is_in_place => normal,
+                normal => (cofactors * normal).normalize_or_zero(),
+            };
+            self.normals.add(base, normals.into_iter().map(turn).collect(), DVec3::ZERO);
         }
         for (set, &accessor) in attributes.uvs.iter().enumerate() {
             let uvs = document.vectors::<2>(accessor)?;
             expect(uvs.len())?;
             if self.uvs.len() <= set {
-                self.uvs.push(Vec::new());
+                self.uvs.push(Column::default());
             }
-            self.uvs[set].resize(base, DVec2::ZERO);
-            self.uvs[set].extend(uvs.into_iter().map(DVec2::from_array));
+            self.uvs[set].add(base, uvs.into_iter().map(DVec2::from_array).collect(), DVec2::ZERO);
         }
-        self.uvs.iter_mut().for_each(|set| set.resize(base + count, DVec2::ZERO));
-
-        self.colors.resize(base + count, None);
         if let Some(accessor) = attributes.colors {
             let colors: Vec<DVec4> = match document.components(accessor)? {
                 3 => document.vectors::<3>(accessor)?.into_iter().map(|[r, g, b]| DVec4::new(r, g, b, 1.0)).collect(),
                 _ => document.vectors::<4>(accessor)?.into_iter().map(DVec4::from_array).collect(),
             };
             expect(colors.len())?;
-            self.colors[base..].iter_mut().zip(colors).for_each(|(slot, color)| *slot = Some(color));
+            self.colors.add(base, colors, DVec4::ONE);
         }
-        self.influences.resize(base + count, Vec::new());
-        if with_skin {
+        if with_skin && !attributes.joints.is_empty() {
+            let mut influences = vec![Vec::new(); count];
             for (&joints, &weights) in attributes.joints.iter().zip(&attributes.weights) {
                 let (joints, weights) = (document.vectors::<4>(joints)?, document.vectors::<4>(weights)?);
                 expect(joints.len())?;
                 expect(weights.len())?;
-                for ((influences, joints), weights) in self.influences[base..].iter_mut().zip(joints).zip(weights) {
+                for ((influences, joints), weights) in influences.iter_mut().zip(joints).zip(weights) {
                     let used = joints.into_iter().zip(weights).filter(|&(_, weight)| weight > 0.0);
                     influences.extend(used.map(|(joint, weight)| (joint as u32, weight)));
                 }
             }
+            self.influences.add(base, influences, Vec::new());
         }
         Ok(())
     }
@@ -191,55 +219,67 @@ impl Soup {
         instance: &Instance,
     ) -> Result<(), ParseError> {
         let vertices = self.positions.len() - base;
-        let mut local: Vec<[u32; 3]> = match mode {
-            Mode::TriangleStrip => {
-                let turn = |(i, t): (usize, &[u32])| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
-                indices.windows(3).enumerate().map(turn).collect()
-            }
-            Mode::TriangleFan => indices.windows(2).skip(1).map(|t| [indices[0], t[0], t[1]]).collect(),
-            _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
-        };
-        // Strips are joined by triangles that name a vertex twice.
-        local.retain(|&[a, b, c]| a != b && b != c && c != a);
-        if let Some(&index) = local.iter().flatten().find(|&&index| index as usize >= vertices) {
+        if let Some(&index) = indices.iter().find(|&&index| index as usize >= vertices) {
             let number = instance.mesh;
             return Err(malformed(format!("mesh {number} names vertex {index}, but the primitive has {vertices}")));
         }
+        let start = self.triangles.len();
+        self.triangles.reserve_exact(if mode == Mode::Triangles { indices.len() / 3 } else { indices.len() });
         // A mirroring node turns the triangles over.
-        if instance.world_from_mesh.determinant() < 0.0 {
-            local.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        let is_mirrored = instance.world_from_mesh.determinant() < 0.0;
+        let mut push = |[a, b, c]: [u32; 3]| {
+            // Strips are joined by triangles that name a vertex twice.
+            if a != b && b != c && c != a {
+                let triangle = if is_mirrored { [a, c, b] } else { [a, b, c] };
+                self.triangles.push(triangle.map(|vertex| vertex + base as u32));
+            }
+        };
+        match mode {
+            Mode::TriangleStrip => {
+                let turn = |(i, t): (usize, &[u32])| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
+                indices.windows(3).enumerate().map(turn).for_each(push);
+            }
+            Mode::TriangleFan => indices.windows(2).skip(1).for_each(|t| push([indices[0], t[0], t[1]])),
+            _ => indices.as_chunks().0.iter().copied().for_each(push),
         }
-        self.triangles.extend(local.into_iter().map(|triangle| triangle.map(|vertex| vertex + base as u32)));
-        let material = primitive.material.map(|material| material.value() as u32);
-        self.materials.resize(self.triangles.len(), material);
+        if let Some(material) = primitive.material {
+            let count = self.triangles.len() - start;
+            self.materials.add(start, vec![Some(material.value() as u32); count], None);
+        }
         Ok(())
     }
 
     fn into_mesh(self, json: &Value) -> TriMesh {
-        let normals = match self.normals.iter().any(Option::is_some) {
-            false => Vec::new(),
-            true => self
-                .triangles
+        let Self { positions, triangles, .. } = self;
+        let count = positions.len();
+        let normals = self.normals.complete(count, DVec3::ZERO);
+        let corner_normals = match normals.is_empty() {
+            true => Vec::new(),
+            false => triangles
                 .iter()
                 .map(|triangle| {
                     // Without normals a mesh is shaded flat, says the format.
-                    let flat = triangle_normal(triangle.map(|vertex| self.positions[vertex as usize]));
-                    triangle.map(|vertex| self.normals[vertex as usize].unwrap_or(flat))
+                    let flat = || triangle_normal(triangle.map(|vertex| positions[vertex as usize]));
+                    triangle.map(|vertex| match normals[vertex as usize] {
+                        DVec3::ZERO => flat(),
+                        normal => normal,
+                    })
                 })
                 .collect(),
         };
-        let uvs = self.uvs.iter().map(|set| self.triangles.iter().map(|t| t.map(|v| set[v as usize])).collect());
-        let colors = match self.colors.iter().any(Option::is_some) {
-            true => self.colors.iter().map(|color| color.unwrap_or(DVec4::ONE)).collect(),
-            false => Vec::new(),
-        };
-        let has_skin = self.influences.iter().any(|influences| !influences.is_empty());
-        let (materials, triangle_materials) = name_materials(json, &self.materials);
+        let by_corner = |set: Vec<DVec2>| triangles.iter().map(|t| t.map(|vertex| set[vertex as usize])).collect();
+        let uvs = self.uvs.into_iter().map(|set| by_corner(set.complete(count, DVec2::ZERO))).collect();
+        let materials = self.materials.complete(triangles.len(), None);
+        let (materials, triangle_materials) = name_materials(json, &materials);
+        let mut skin = self.influences.complete(count, Vec::new());
+        if skin.iter().all(Vec::is_empty) {
+            skin.clear();
+        }
         TriMesh {
-            corner: CornerAttributes { uvs: uvs.collect(), normals, colors: Vec::new() },
-            vertex: VertexAttributes { colors, skin: if has_skin { self.influences } else { Vec::new() } },
-            positions: self.positions,
-            triangles: self.triangles,
+            corner: CornerAttributes { uvs, normals: corner_normals, colors: Vec::new() },
+            vertex: VertexAttributes { colors: self.colors.complete(count, DVec4::ONE), skin },
+            positions,
+            triangles,
             materials,
             triangle_materials,
             ..TriMesh::default()

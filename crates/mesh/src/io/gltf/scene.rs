@@ -14,7 +14,7 @@ pub(super) struct Instance {
     pub(super) world_from_mesh: DMat4,
 }
 
-impl Document {
+impl Document<'_> {
     /// The meshes of the default scene in the order of its nodes, or of all nodes where there is no scene, or all meshes
     /// where there are no nodes either.
     pub(super) fn instances(&self) -> Result<Vec<Instance>, ParseError> {
