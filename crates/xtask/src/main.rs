@@ -6,8 +6,10 @@
 mod arrows;
 mod bench;
 mod data;
+mod environment;
 mod gallery;
 mod oracle;
+mod python;
 mod shell;
 mod test;
 
@@ -17,8 +19,12 @@ use shell::TaskResult;
 
 type Task = (&'static str, &'static str, fn() -> TaskResult);
 
-const TASKS: [Task; 5] = [
-    ("test", "formatting, lints, all tests, then the oracle: what must pass before a change goes in", test::run_all),
+const TASKS: [Task; 6] = [
+    (
+        "test",
+        "formatting, lints, all tests in Rust and Python, then the oracle: what must pass before a change goes in",
+        test::run_all,
+    ),
     (
         "oracle",
         "compare what recipes write with PyMeshLab and libigl, installed into the target folder",
@@ -29,6 +35,7 @@ const TASKS: [Task; 5] = [
         "run the programs of the folder `bench`, or those named, and write the table of the README",
         bench::measure_all,
     ),
+    ("python", "install the Python package into the target folder and run its tests", python::test_package),
     ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
     ("gallery", "run all recipes and examples of the figures, and show them in gallery/gallery.md", gallery::draw_all),
 ];

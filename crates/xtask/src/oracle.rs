@@ -7,7 +7,10 @@ use std::{
     process::Command,
 };
 
-use crate::shell::{TaskResult, cargo, run, target, workspace};
+use crate::{
+    environment::interpreter,
+    shell::{TaskResult, cargo, run, target, workspace},
+};
 
 /// What the judges need, at the versions that were tried.
 const PACKAGES: [&str; 3] = ["pymeshlab==2025.7.post1", "libigl==2.6.3", "numpy<3"];
@@ -30,21 +33,12 @@ pub(crate) fn run_judges() -> TaskResult {
     run(&mut judge)
 }
 
-/// The interpreter of the judges' environment, which is made on the first call.
+/// The interpreter of the judges' environment.
 fn environment() -> TaskResult<PathBuf> {
-    let folder = target().join("oracle/environment");
-    let python = folder.join("bin/python");
-    let stamp = folder.join("installed.txt");
-    let wanted = PACKAGES.join("\n");
-    if fs::read_to_string(&stamp).is_ok_and(|installed| installed == wanted) {
-        return Ok(python);
-    }
-    run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;
-    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]).args(PACKAGES))?;
+    let python = interpreter("oracle", &PACKAGES)?;
     if !can_load(&python, SYSTEM_LIBRARY) {
         install_system_library()?;
     }
-    fs::write(stamp, wanted)?;
     Ok(python)
 }
 

@@ -1,0 +1,39 @@
+"""Builds the wheel with maturin, and puts the command `isochore` into it."""
+
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import maturin
+from maturin import (  # noqa: F401  what pip asks for besides the wheel
+    build_sdist,
+    get_requires_for_build_sdist,
+    get_requires_for_build_wheel,
+)
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCRIPTS = ROOT / "target" / "python" / "isochore.data" / "scripts"
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    # Already here maturin asks for the folder.
+    SCRIPTS.mkdir(parents=True, exist_ok=True)
+    return maturin.prepare_metadata_for_build_wheel(metadata_directory, config_settings)
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    _stage_command()
+    return maturin.build_wheel(wheel_directory, config_settings, metadata_directory)
+
+
+def _stage_command():
+    """Compiles the command and lays it where maturin takes scripts from."""
+    subprocess.run(["cargo", "build", "--release", "--locked", "--package", "isochore"], cwd=ROOT, check=True)
+    metadata = subprocess.run(
+        ["cargo", "metadata", "--no-deps", "--format-version", "1"], cwd=ROOT, check=True, capture_output=True
+    )
+    name = "isochore.exe" if sys.platform == "win32" else "isochore"
+    SCRIPTS.mkdir(parents=True, exist_ok=True)
+    shutil.copy(pathlib.Path(json.loads(metadata.stdout)["target_directory"]) / "release" / name, SCRIPTS / name)

@@ -1,0 +1,21 @@
+"""Deforms triangle meshes through divergence-free vector fields, so that volume is kept by construction.
+
+>>> import isochore
+>>> result = isochore.run({
+...     "recipe": 1,
+...     "target": {"shape": {"kind": "icosphere", "radius": 1.0, "subdivisions": 3}},
+...     "stroke": [{"kind": "twist", "origin": [0, 0, 0], "axis": [0, 0, 1], "degrees_per_unit": 30.0}],
+... })
+>>> abs(result.report["volume_change"]) < 1e-12
+True
+
+Coordinates and lengths are in model units, arrays are C-contiguous. Arrays that belong to a `Mesh` or a `DistanceField` are
+read-only views of its memory. The interpreter's lock is released while isochore works.
+"""
+
+from isochore._native import DistanceField, Error, Mesh
+from isochore._native import CancelledError as Cancelled
+from isochore._native import RecipeFault as RecipeError
+from isochore._recipe import Result, run, run_points
+
+__all__ = ["Cancelled", "DistanceField", "Error", "Mesh", "RecipeError", "Result", "run", "run_points"]

@@ -1,0 +1,75 @@
+"""Deforms many meshes by one recipe on a Dask cluster that is there already (`pip install isochore[farm]`).
+
+>>> from dask.distributed import Client                         # doctest: +SKIP
+>>> from isochore import farm                                   # doctest: +SKIP
+>>> with Client("tcp://head:8786") as client:                   # doctest: +SKIP
+...     for target, outcome in farm.run("press.toml", sorted(scans.glob("*.ply")), "pressed", client=client):
+...         print(target, outcome)
+
+Recipe, targets and results lie in folders that all workers see under the same path. Each mesh is one task; the cluster gives the
+tasks of a worker that dies to others. A result is written whole or not at all, the mesh first and then its report, so that what is
+finished stays finished: started again with the same recipe, settings and targets, a run does only what is missing.
+"""
+
+import functools
+import hashlib
+import json
+import os
+import pathlib
+import tempfile
+
+from isochore._recipe import run as _run
+
+try:
+    from distributed import as_completed
+except ImportError as missing:
+    raise ImportError("isochore.farm needs Dask: pip install isochore[farm]") from missing
+
+
+def run(recipe, targets, folder, *, client, format="ply", settings=()):
+    """Deforms every mesh file of `targets` by `recipe` into `folder`. See the type stubs for the arguments."""
+    recipe = pathlib.Path(os.fspath(recipe)).resolve()
+    folder = pathlib.Path(os.fspath(folder)).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    targets = [pathlib.Path(os.fspath(target)).resolve() for target in targets]
+    places = [folder / f"{target.stem}.{format}" for target in targets]
+    of_place = dict(zip(places, targets))
+    if len(of_place) < len(targets):
+        other = next(target for target, place in zip(targets, places) if of_place[place] != target)
+        raise ValueError(f"{other}: another target has the same name")
+    if not set(places).isdisjoint([*targets, recipe]):
+        raise ValueError(f"{folder}: results would take the place of what they are made from")
+    # Impure: whether there is anything to do, the worker finds out from the files.
+    deform = functools.partial(client.submit, _deform, recipe, settings=list(settings), pure=False)
+    tasks = {deform(target, place): target for place, target in of_place.items()}
+    for task in as_completed(tasks):
+        yield tasks[task], task.exception() or task.result()
+
+
+def _deform(recipe, target, place, *, settings):
+    """One task: the report, made now or found from an earlier run."""
+    origin = _origin(recipe, target, settings)
+    account = place.with_name(place.name + ".json")
+    if place.exists() and account.exists():
+        done = json.loads(account.read_text(encoding="utf-8"))
+        if done["origin"] == origin:
+            return done["report"]
+    result = _run(recipe, settings=[*settings, f"target.mesh={json.dumps(str(target))}"])
+    result.mesh.write(place)
+    _write_whole(account, json.dumps({"origin": origin, "report": result.report}, indent=2))
+    return result.report
+
+
+def _origin(recipe, target, settings):
+    """What a result is made of: of recipe and target the SHA-256, and the settings."""
+    sha256 = {"recipe": recipe, "target": target}
+    return {
+        **{name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in sha256.items()},
+        "settings": list(settings),
+    }
+
+
+def _write_whole(path, text):
+    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=path.parent, prefix=".isochore-", delete=False) as draft:
+        draft.write(text)
+    os.replace(draft.name, path)

@@ -1,0 +1,147 @@
+//! Errors as Python knows them: `OSError` for files that cannot be reached, `ValueError` and `TypeError` for arguments of the wrong
+//! form, and exceptions of our own for the rest.
+
+use std::{fmt::Display, io};
+
+use isochore_mesh::{
+    Cancelled, DistanceFieldError, MeshError, SelfIntersectionError,
+    io::{ReadError, WriteError},
+};
+use isochore_sculpt::{
+    ReplayError,
+    recipe::{Location, RecipeError},
+};
+use pyo3::{
+    PyErr, Python, create_exception,
+    exceptions::{PyException, PyValueError},
+    types::PyAnyMethods,
+};
+
+create_exception!(
+    isochore,
+    Error,
+    PyException,
+    "Input that cannot be worked with; the message names what is at fault."
+);
+create_exception!(
+    isochore,
+    RecipeFault,
+    Error,
+    "A recipe that cannot be followed. `key` is the dotted path of what is wrong in it, `line` its line; None where unknown."
+);
+create_exception!(isochore, CancelledError, Error, "The `progress` function asked to stop.");
+
+/// An error on its way to Python.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// Already an exception.
+    Raised(PyErr),
+    /// A file cannot be reached.
+    File(io::ErrorKind, String),
+    /// An argument has the wrong form.
+    Argument(String),
+    /// Input that cannot be worked with.
+    Input(String),
+    /// A recipe that cannot be followed.
+    Recipe { message: String, key: Option<String>, line: Option<usize> },
+    /// The caller asked to stop.
+    Cancelled,
+}
+
+impl Failure {
+    /// Input that cannot be worked with.
+    pub(crate) fn input(problem: impl Display) -> Self {
+        Self::Input(problem.to_string())
+    }
+}
+
+impl From<Failure> for PyErr {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Raised(error) => error,
+            Failure::File(kind, message) => io::Error::new(kind, message).into(),
+            Failure::Argument(message) => PyValueError::new_err(message),
+            Failure::Input(message) => Error::new_err(message),
+            Failure::Recipe { message, key, line } => Python::attach(|py| {
+                let error = RecipeFault::new_err(message);
+                let value = error.value(py);
+                match value.setattr("key", key).and_then(|()| value.setattr("line", line)) {
+                    Ok(()) => error,
+                    Err(raised) => raised,
+                }
+            }),
+            Failure::Cancelled => CancelledError::new_err("cancelled"),
+        }
+    }
+}
+
+impl From<PyErr> for Failure {
+    fn from(error: PyErr) -> Self {
+        Self::Raised(error)
+    }
+}
+
+impl From<Cancelled> for Failure {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        match &error {
+            ReadError::Io { source, .. } => Self::File(source.kind(), error.to_string()),
+            _ => Self::input(error),
+        }
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        match &error {
+            WriteError::Io { source, .. } => Self::File(source.kind(), error.to_string()),
+            _ => Self::input(error),
+        }
+    }
+}
+
+impl From<MeshError> for Failure {
+    fn from(error: MeshError) -> Self {
+        Self::input(error)
+    }
+}
+
+impl From<SelfIntersectionError> for Failure {
+    fn from(error: SelfIntersectionError) -> Self {
+        match error {
+            SelfIntersectionError::Cancelled(_) => Self::Cancelled,
+            error => Self::input(error),
+        }
+    }
+}
+
+impl From<DistanceFieldError> for Failure {
+    fn from(error: DistanceFieldError) -> Self {
+        match error {
+            DistanceFieldError::Cancelled(_) => Self::Cancelled,
+            error => Self::input(error),
+        }
+    }
+}
+
+impl From<RecipeError> for Failure {
+    fn from(error: RecipeError) -> Self {
+        let line = if let Location::Line(line) = error.location { Some(line) } else { None };
+        Self::Recipe { message: error.to_string(), key: Some(error.key), line }
+    }
+}
+
+impl From<ReplayError> for Failure {
+    fn from(error: ReplayError) -> Self {
+        match error {
+            ReplayError::Cancelled(_) => Self::Cancelled,
+            ReplayError::Recipe(error) => error.into(),
+            error => Self::Recipe { message: error.to_string(), key: error.key(), line: None },
+        }
+    }
+}

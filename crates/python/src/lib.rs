@@ -1,0 +1,22 @@
+//! isochore for Python: the module `isochore._native`, which the package `isochore` presents.
+
+mod arrays;
+mod distance;
+mod error;
+mod mesh;
+mod replay;
+mod watch;
+
+use pyo3::prelude::*;
+
+/// What of isochore is not written in Python.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::{
+        distance::DistanceField,
+        error::{CancelledError, Error, RecipeFault},
+        mesh::Mesh,
+        replay::LoadedRecipe,
+    };
+}

@@ -1,0 +1,118 @@
+//! Recipes carried out on meshes and on bare points.
+
+use std::collections::BTreeMap;
+
+use isochore_mesh::Monitor;
+use isochore_sculpt::{
+    Meshes, Recipe, Report, Source, recipe,
+    recipe::{Format, Override},
+};
+use numpy::PyArray2;
+use pyo3::{prelude::*, types::PyDict};
+
+use crate::{
+    arrays::{contiguous, finite_numbers, points, points_to_array},
+    error::Failure,
+    mesh::{Mesh, mesh_of},
+    watch::watched,
+};
+
+/// A recipe with the meshes and curves that it names.
+#[pyclass(frozen, module = "isochore")]
+#[derive(Debug)]
+pub(crate) struct LoadedRecipe {
+    recipe: Recipe,
+    text: String,
+    settings: Vec<String>,
+}
+
+#[pymethods]
+impl LoadedRecipe {
+    /// Reads a recipe, in JSON where `is_json`, in TOML otherwise; `settings` of the form KEY=VALUE win over it.
+    #[new]
+    fn new(text: String, is_json: bool, settings: Vec<String>) -> Result<Self, Failure> {
+        let overrides: Vec<Override> =
+            settings.iter().map(|setting| Override::parse(setting)).collect::<Result<_, _>>()?;
+        let format = if is_json { Format::Json } else { Format::Toml };
+        let recipe = Recipe::parse(&text, format, &overrides)?;
+        Ok(Self { recipe, text, settings })
+    }
+
+    /// Names of the mesh files that it needs.
+    #[getter]
+    fn mesh_names(&self) -> Vec<&str> {
+        self.recipe.mesh_names()
+    }
+
+    /// Names of the curve files that it needs.
+    #[getter]
+    fn curve_names(&self) -> Vec<&str> {
+        self.recipe.curve_names()
+    }
+
+    /// Name of the file with the weights of its mask, if it has one.
+    #[getter]
+    fn weights_name(&self) -> Option<&str> {
+        match &self.recipe.mask.vertices {
+            Some(recipe::VertexWeights::File(name)) => Some(name),
+            _ => None,
+        }
+    }
+
+    /// Deforms the target: the mesh, the same triangles at rest, and the report as JSON.
+    fn replay(
+        &self,
+        py: Python<'_>,
+        meshes: &Bound<'_, PyDict>,
+        curves: BTreeMap<String, Vec<[f64; 3]>>,
+        weights: Option<Vec<f64>>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> Result<(Mesh, Mesh, String), Failure> {
+        let recipe = self.with(curves, weights);
+        let meshes = meshes_of(meshes)?;
+        watched(py, progress, |monitor| {
+            let replay = isochore_sculpt::replay(&recipe, &meshes, monitor)?;
+            let source = Source { text: self.text.as_bytes(), overrides: &self.settings };
+            let report = Report::new(&recipe, source, &replay, &replay.deformed.mesh, monitor)?;
+            let report = serde_json::to_string(&report).expect("a report has only strings for keys");
+            Ok((Mesh { mesh: replay.deformed.mesh }, Mesh { mesh: replay.deformed.rest }, report))
+        })
+    }
+
+    /// Carries points of shape (N, 3) along the strokes; the points and warnings.
+    fn replay_points<'py>(
+        &self,
+        py: Python<'py>,
+        array: &Bound<'py, PyAny>,
+        meshes: &Bound<'_, PyDict>,
+        curves: BTreeMap<String, Vec<[f64; 3]>>,
+        weights: Option<Vec<f64>>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> Result<(Bound<'py, PyArray2<f64>>, Vec<String>), Failure> {
+        let recipe = self.with(curves, weights);
+        let meshes = meshes_of(meshes)?;
+        let array = contiguous::<f64>(array)?;
+        let points = points("points", &array)?;
+        finite_numbers("points", &array)?;
+        let work = |monitor: &dyn Monitor| Ok(isochore_sculpt::replay_points(&recipe, &meshes, points, monitor)?);
+        let replay = watched(py, progress, work)?;
+        Ok((points_to_array(py, replay.points)?, replay.warnings))
+    }
+}
+
+impl LoadedRecipe {
+    fn with(&self, curves: BTreeMap<String, Vec<[f64; 3]>>, weights: Option<Vec<f64>>) -> Recipe {
+        let mut recipe = self.recipe.clone();
+        for (name, points) in curves {
+            recipe.inline_curve(&name, &points);
+        }
+        if let Some(weights) = weights {
+            recipe.mask.vertices = Some(recipe::VertexWeights::Values(weights));
+        }
+        recipe
+    }
+}
+
+fn meshes_of(meshes: &Bound<'_, PyDict>) -> Result<Meshes, Failure> {
+    meshes.iter().map(|(name, mesh)| Ok((name.extract()?, mesh_of(&mesh)?))).collect()
+}

@@ -1,0 +1,111 @@
+import numpy as np
+import pytest
+import trimesh
+
+import isochore
+
+
+@pytest.fixture
+def cube():
+    return isochore.Mesh.from_trimesh(trimesh.creation.box())
+
+
+def test_arrays_are_views_of_the_mesh(cube):
+    assert cube.positions.shape == (8, 3) and cube.positions.dtype == np.float64
+    assert cube.triangles.shape == (12, 3) and cube.triangles.dtype == np.uint32
+    for name in ["positions", "triangles"]:
+        first, second = getattr(cube, name), getattr(cube, name)
+        assert np.shares_memory(first, second)
+        with pytest.raises(ValueError):
+            first[0] = 0
+        with pytest.raises(ValueError):
+            first.flags.writeable = True
+
+
+def test_views_outlive_their_mesh():
+    positions = isochore.Mesh(np.eye(3), [[0, 1, 2]]).positions
+    # What was freed would be taken by this.
+    crowd = [np.full(9, 7.0) for _ in range(100)]
+    assert np.array_equal(positions, np.eye(3)) and len(crowd) == 100
+
+
+def test_measures(cube):
+    assert cube.is_closed
+    assert cube.volume == pytest.approx(1, abs=1e-15)
+    assert cube.area == pytest.approx(6, abs=1e-14)
+    assert cube.bounds == [[-0.5] * 3, [0.5] * 3]
+    assert cube.self_intersections().size == 0
+
+
+def test_goes_to_trimesh_and_back(cube):
+    there = cube.to_trimesh()
+    assert there.is_watertight and there.volume == pytest.approx(1, abs=1e-14)
+    back = isochore.Mesh.from_trimesh(there)
+    assert np.array_equal(back.positions, cube.positions) and np.array_equal(back.triangles, cube.triangles)
+
+
+def test_any_layout_comes_in():
+    fortran = np.asfortranarray(np.arange(9.0).reshape(3, 3))
+    for positions in [fortran, fortran.astype(np.float32), fortran.tolist(), np.arange(18.0).reshape(3, 6)[:, ::2]]:
+        mesh = isochore.Mesh(positions, np.array([[0, 1, 2]], dtype=np.int16))
+        assert np.array_equal(mesh.positions, np.asarray(positions, dtype=float))
+
+
+@pytest.mark.parametrize(
+    "positions, triangles, words",
+    [
+        (np.zeros((3, 2)), [[0, 1, 2]], "positions must have the shape (N, 3)"),
+        (np.eye(3), [0, 1, 2], "triangles must have the shape (N, 3)"),
+        (np.eye(3), [[0.0, 1.0, 2.0]], "triangles must be integers"),
+        (np.eye(3), [[0, 1, -1]], "triangle 0"),
+        (np.eye(3), [[0, 1, 2**32]], "triangle 0"),
+    ],
+)
+def test_wrong_arrays_are_refused(positions, triangles, words):
+    with pytest.raises(ValueError) as caught:
+        isochore.Mesh(positions, triangles)
+    assert words in str(caught.value)
+
+
+def test_unusable_meshes_are_refused():
+    with pytest.raises(isochore.Error, match="triangle 0 names vertex 3"):
+        isochore.Mesh(np.eye(3), [[0, 1, 3]])
+    with pytest.raises(isochore.Error, match="vertex 1"):
+        isochore.Mesh([[0, 0, 0], [np.nan, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+
+
+def test_attributes_come_back():
+    uvs = np.arange(6.0).reshape(1, 3, 2)
+    colors = np.linspace(0, 1, 12).reshape(3, 4)
+    mesh = isochore.Mesh(np.eye(3), [[0, 1, 2]], uvs=uvs, colors=colors)
+    assert np.array_equal(mesh.uvs, uvs) and np.array_equal(mesh.colors, colors)
+    assert isochore.Mesh(np.eye(3), [[0, 1, 2]]).uvs is None
+    with pytest.raises(ValueError, match="colors"):
+        isochore.Mesh(np.eye(3), [[0, 1, 2]], colors=np.full((3, 4), np.inf))
+
+
+def test_files(cube, tmp_path):
+    cube.write(tmp_path / "cube.obj")
+    read = isochore.Mesh.read(tmp_path / "cube.obj")
+    assert np.array_equal(read.positions, cube.positions)
+    assert (tmp_path / "cube.obj").read_bytes() == cube.to_bytes("obj")
+    again = isochore.Mesh.from_bytes(cube.to_bytes("ply"), "ply")
+    assert np.array_equal(again.triangles, cube.triangles)
+    with pytest.raises(FileNotFoundError, match="absent.obj"):
+        isochore.Mesh.read(tmp_path / "absent.obj")
+    with pytest.raises(ValueError, match="`doc` is no format"):
+        cube.to_bytes("doc")
+
+
+def test_distance_of_a_cube(cube):
+    field = isochore.DistanceField(cube, 32)
+    assert field.samples.dtype == np.float32 and field.samples.ndim == 3
+    distances, gradients = field([[0, 0, 0.5], [0.1, -0.1, 0.4]])
+    # What the spline makes of the kink on medial surfaces dies away by 0.27 a node, and these are six nodes off.
+    # So does the border of the grid, eight nodes off.
+    rest = 0.27**6 / 32
+    assert distances == pytest.approx([0, -0.1], abs=rest)
+    assert gradients == pytest.approx(np.array([[0, 0, 1.0], [0, 0, 1]]), abs=32 * rest)
+    node = np.array([3, 4, 5])
+    there = field.origin + field.cell * node[::-1]
+    assert field(there[None])[0][0] == pytest.approx(field.samples[tuple(node)], abs=1e-6)

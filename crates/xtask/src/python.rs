@@ -1,0 +1,22 @@
+//! The Python package: built, installed and tested as its users would.
+
+use std::process::Command;
+
+use crate::{
+    environment::{install, interpreter},
+    shell::{TaskResult, run, workspace},
+};
+
+/// What the tests need beside the package, at the versions that were tried.
+const PACKAGES: [&str; 4] = ["numpy==2.4.6", "pytest==9.2.0", "trimesh==5.2.0", "distributed==2026.8.0"];
+
+/// Installs the package of the workspace and runs its tests and its example.
+pub(crate) fn test_package() -> TaskResult {
+    let python = interpreter("python", &PACKAGES)?;
+    let source = workspace().display().to_string();
+    install(&python, &["--force-reinstall", "--no-deps", &source])?;
+    run(Command::new(&python)
+        .args(["-m", "pytest", "--quiet", "-p", "no:cacheprovider"])
+        .arg("crates/python/tests")
+        .current_dir(workspace()))
+}
