@@ -1,10 +1,6 @@
 //! STL, both kinds.
-//!
-//! The library `stl_io` reads binary files. Text files are read here, because it rounds them to single precision, stops
-//! after the first solid, refuses solids without a name and facets whose normal is not a number, and its errors name
-//! no line.
 
-use std::io::{self, Cursor, Write};
+use std::io::{self, Write};
 
 use glam::{DVec3, Vec3};
 
@@ -12,6 +8,7 @@ use super::text::{at_line, numbered_lines, read_numbers};
 use super::{LineProblem, ParseError};
 use crate::TriMesh;
 use crate::measure::triangle_normal;
+use crate::position_table::PositionTable;
 
 /// Bytes before the triangles of a binary file: a free text and their number.
 const HEADER: usize = 84;
@@ -23,39 +20,28 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let count =
         bytes.get(80..HEADER).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
     let expected = count.map(|count| HEADER + RECORD * count);
-    // The size decides, because the header of a binary file may say anything.
-    let positions = if expected == Some(bytes.len()) {
-        parse_binary(bytes)?
-    } else if bytes.trim_ascii_start().starts_with(b"solid") {
-        parse_text(bytes)?
-    } else {
-        return match expected {
-            Some(expected) if expected < bytes.len() => Ok(soup(parse_binary(bytes)?)),
-            Some(expected) => Err(ParseError::Malformed(format!(
-                "the file is truncated: {expected} bytes announced, {} found",
-                bytes.len()
-            ))),
-            None => Err(ParseError::Malformed("the file is truncated in its header".into())),
-        };
-    };
-    Ok(soup(positions))
+    // The size decides, because the header of a binary file may say anything; that of a text file is its first word.
+    match expected {
+        Some(expected) if expected == bytes.len() => Ok(parse_binary(&bytes[HEADER..])),
+        _ if bytes.trim_ascii_start().starts_with(b"solid") => parse_text(bytes),
+        Some(expected) if expected < bytes.len() => Ok(parse_binary(&bytes[HEADER..expected])),
+        Some(expected) => Err(ParseError::Malformed(format!(
+            "the file is truncated: {expected} bytes announced, {} found",
+            bytes.len()
+        ))),
+        None => Err(ParseError::Malformed("the file is truncated in its header".into())),
+    }
 }
 
-fn parse_binary(bytes: &[u8]) -> Result<Vec<DVec3>, ParseError> {
-    let mut bytes = bytes.to_vec();
-    // The library takes every file that begins with `solid` for text.
-    bytes[0] = 0;
-    let read = |error: io::Error| ParseError::Malformed(error.to_string());
-    let corners = |triangle: stl_io::Triangle| triangle.vertices.map(|corner| Vec3::from_array(corner.0).as_dvec3());
-    let triangles: Result<Vec<_>, _> = stl_io::create_stl_reader(&mut Cursor::new(bytes))
-        .map_err(read)?
-        .map(|triangle| triangle.map(corners))
-        .collect();
-    Ok(triangles.map_err(read)?.concat())
+fn parse_binary(bytes: &[u8]) -> TriMesh {
+    let records = bytes.as_chunks::<RECORD>().0;
+    let coordinate = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    let corner = |bytes: &[u8]| Vec3::from_array([0, 4, 8].map(|at| coordinate(&bytes[at..]))).as_dvec3();
+    welded(records.iter().map(|record| [12, 24, 36].map(|at| corner(&record[at..]))), records.len())
 }
 
 /// Corners of all facets of all solids. Only `vertex` and the ends of loops matter.
-fn parse_text(bytes: &[u8]) -> Result<Vec<DVec3>, ParseError> {
+fn parse_text(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let mut positions = Vec::new();
     let mut last_line = 0;
     for (line, mut words) in numbered_lines(bytes) {
@@ -71,15 +57,31 @@ fn parse_text(bytes: &[u8]) -> Result<Vec<DVec3>, ParseError> {
             _ => {}
         }
     }
-    match positions.len().is_multiple_of(3) {
-        true => Ok(positions),
-        false => Err(at_line(last_line)(LineProblem::NotATriangle)),
+    match positions.as_chunks() {
+        (triangles, []) => Ok(welded(triangles.iter().copied(), triangles.len())),
+        _ => Err(at_line(last_line)(LineProblem::NotATriangle)),
     }
 }
 
-fn soup(positions: Vec<DVec3>) -> TriMesh {
-    let triangles = (0..positions.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    TriMesh::new(positions, triangles).welded()
+/// Equal positions become one vertex; triangles that lose a side by it are left out.
+fn welded(triangles: impl Iterator<Item = [DVec3; 3]>, count: usize) -> TriMesh {
+    // A closed surface has half as many vertices as triangles, or little less.
+    let mut table = PositionTable::with_capacity(count / 2);
+    let mut mesh = TriMesh::new(Vec::with_capacity(count / 2), Vec::with_capacity(count));
+    for corners in triangles {
+        let [a, b, c] = corners.map(|position| {
+            let new = mesh.positions.len() as u32;
+            let vertex = table.find_or_insert(position, new, |known| mesh.positions[known as usize]);
+            if vertex == new {
+                mesh.positions.push(position);
+            }
+            vertex
+        });
+        if a != b && b != c && c != a {
+            mesh.triangles.push([a, b, c]);
+        }
+    }
+    mesh
 }
 
 /// Writes binary STL. The facet normals are those of the triangles as rounded.

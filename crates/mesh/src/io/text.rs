@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use super::{LineProblem, ParseError};
 
 /// Words between spaces.
+#[derive(Clone)]
 pub(super) struct Words<'a> {
     pub(super) rest: &'a [u8],
 }
@@ -37,6 +38,10 @@ impl Words<'_> {
                 Some(word) => Err(LineProblem::NotANumber(text(word))),
             },
         }
+    }
+
+    pub(super) fn is_at_end(&self) -> bool {
+        self.rest.iter().all(is_space)
     }
 
     #[inline]

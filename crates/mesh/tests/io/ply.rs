@@ -54,16 +54,58 @@ fn errors_are_one_line() {
     assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "face 0 names vertex 3, but the file has 3 vertices");
     assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), "face 0 names vertex -1, but the file has 3 vertices");
     assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), "face 0 has fewer than three corners");
-    let message = error("0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n");
-    assert!(message.starts_with("Line 11: Couldn't read element line. String: '1 nan 0"), "{message}");
-    let truncated = error("0 0 0\n1 0 0\n");
-    assert!(!truncated.contains('\n') && truncated.contains("nexpected end of file"), "{truncated}");
+    assert_eq!(error("0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"), "line 11: 'nan' is not a finite number");
+    assert_eq!(error("0 0 0\n1 0\n0 1 0\n3 0 1 2\n"), "line 11: the line ends too early");
+    assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n"), "line 13: the line ends too early");
+    assert_eq!(error("0 0 0\n1 0 0\n"), "the file is truncated: it ends in vertex 2, counted from zero");
     let mut binary = written(Format::Ply, &seamed_box());
     let body = binary.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
     binary[body..body + 8].copy_from_slice(&f64::NAN.to_le_bytes());
     let message = io::read_bytes(Format::Ply, &binary).unwrap_err().to_string();
     assert!(message.starts_with("vertex 0 is at [NaN, "), "{message}");
-    assert!(parse(Format::Ply, "plx\n").is_err());
+    let whole = written(Format::Ply, &seamed_box());
+    let truncated = io::read_bytes(Format::Ply, &whole[..body + 100]).unwrap_err().to_string();
+    assert_eq!(truncated, "the file is truncated: it ends in vertex 2, counted from zero");
+    let header_error = |text: &str| parse(Format::Ply, text).unwrap_err().to_string();
+    assert_eq!(header_error("plx\n"), "line 1: 'ply' expected: this is no PLY file");
+    assert_eq!(
+        header_error("ply\nformat ascii 1.0\nelement vertex many\n"),
+        "line 3: 'many' is not a number of elements"
+    );
+    assert_eq!(header_error("ply\nformat ascii 1.0\n"), "line 3: the header has no 'end_header'");
     // A count without anything to count must not be looped over.
     assert!(parse(Format::Ply, "ply\nformat ascii 1.0\nelement vertex 99999999999\nend_header\n").is_err());
+}
+
+#[test]
+fn faces_may_come_before_vertices_and_be_of_any_size() {
+    let text = "ply\nformat ascii 1.0\nelement face 2\nproperty uchar flag\nproperty list uchar int vertex_indices\n\
+                property list uchar float texcoord\nelement vertex 5\nproperty list uchar int ring\nproperty float z\n\
+                property float x\nproperty float y\nend_header\n7 4 0 1 2 3 0\n7 3 0 1 4 6 0 0 1 0 0.5 0\n\
+                0 0 0 0\n2 8 9 0 1 0\n0 0 1 1\n0 0 0 1\n0 2 0 0\n";
+    let mesh = parse(Format::Ply, text).unwrap();
+    assert_eq!(mesh.positions[4], DVec3::new(0.0, 0.0, 2.0));
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 4]]);
+    assert_eq!(mesh.corner.uvs[0][1], [DVec2::ZERO; 3]);
+    assert_eq!(mesh.corner.uvs[0][2], [DVec2::ZERO, DVec2::X, DVec2::new(0.5, 0.0)]);
+}
+
+#[test]
+fn quadrilaterals_among_triangles_are_read_from_binary_files() {
+    let mut file = b"ply\nformat binary_little_endian 1.0\nelement vertex 5\nproperty float x\nproperty float y\n\
+                     property float z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n"
+        .to_vec();
+    for coordinate in [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0] {
+        file.extend(coordinate.to_le_bytes());
+    }
+    for face in [&[0_i32, 1, 4][..], &[0, 1, 2, 3], &[1, 2, 4]] {
+        file.push(face.len() as u8);
+        face.iter().for_each(|vertex| file.extend(vertex.to_le_bytes()));
+    }
+    let mesh = io::read_bytes(Format::Ply, &file).unwrap();
+    assert_eq!(mesh.triangles, [[0, 1, 4], [0, 1, 2], [0, 2, 3], [1, 2, 4]]);
+    let end = file.len();
+    file[end - 4..].copy_from_slice(&9_i32.to_le_bytes());
+    let error = io::read_bytes(Format::Ply, &file).unwrap_err().to_string();
+    assert_eq!(error, "face 2 names vertex 9, but the file has 5 vertices");
 }
