@@ -98,6 +98,7 @@ impl Profile {
     }
 
     /// [`evaluate`](Self::evaluate) for the distances of a block and the support radius R.
+    #[inline(always)]
     pub(crate) fn evaluate_block(self, distances: &[f64; LANES], support: f64) -> ProfileBlock {
         // One loop a profile, so that the choice is made once a block and each loop becomes vector code.
         match self {

@@ -14,6 +14,7 @@
 
 use glam::DVec3;
 use isochore_mesh::{DistanceBlock, LANES, PointBlock};
+use multiversion::multiversion;
 
 use crate::{BodyTwist, Tool, field::curl_of_product, gauge::Cubic};
 
@@ -22,6 +23,8 @@ use crate::{BodyTwist, Tool, field::curl_of_product, gauge::Cubic};
 pub struct RigidField<'a> {
     tool: &'a Tool,
     twist: BodyTwist,
+    /// About the tool's center.
+    motion: RigidMotion,
     /// What is added to the potential.
     gauge: Option<Cubic>,
 }
@@ -47,7 +50,7 @@ impl<'a> RigidField<'a> {
     pub fn new(tool: &'a Tool, twist: BodyTwist) -> Self {
         let center = tool.center();
         let motion = RigidMotion { center, linear: twist.velocity(center), angular: twist.angular };
-        Self { tool, twist, gauge: tool.gauge().map(|gauge| gauge.of(&motion)) }
+        Self { tool, twist, motion, gauge: tool.gauge().map(|gauge| gauge.of(&motion)) }
     }
 
     /// The tool that moves.
@@ -60,34 +63,17 @@ impl<'a> RigidField<'a> {
     /// In the rigid core the relative velocity is exactly zero.
     pub fn evaluate_into(&self, points: &PointBlock, out: &mut VelocityBlock) {
         let mut distance = DistanceBlock::FAR;
-        self.tool.distance().sample_into(points, &mut distance);
-        let support = self.tool.support();
-        let profile = self.tool.profile().evaluate_block(&distance.value, support);
-
-        let motion = self.motion();
-        for lane in 0..LANES {
-            let (potential, curl) = motion.potential(points.get(lane));
-            let gradient = profile.slope[lane] / support * distance.gradient.get(lane);
-            // V − (v + ω×r) = (g − 1)(v + ω×r) + (g′/R) n × A
-            out.relative.set(lane, curl_of_product(profile.value[lane] - 1.0, gradient, potential, curl));
-        }
+        self.tool.distance().sample_single_into(points, &mut distance);
+        relative_velocity(self.tool, &self.motion, points, &distance, out);
         if let Some(gauge) = &self.gauge {
+            let (support, profile) = (self.tool.support(), self.tool.profile());
+            let profile = profile.evaluate_block(&distance.value, support);
             for lane in 0..LANES {
                 let gradient = profile.slope[lane] / support * distance.gradient.get(lane);
-                let added = gradient.cross(gauge.gradient(points.get(lane) - motion.center));
+                let added = gradient.cross(gauge.gradient(points.get(lane) - self.motion.center));
                 out.relative.set(lane, out.relative.get(lane) + added);
             }
         }
-        out.distance = distance.value;
-        for lane in 0..LANES {
-            out.is_outside[lane] = profile.value[lane] == 0.0 && profile.slope[lane] == 0.0;
-        }
-    }
-
-    /// The tool's motion about its center.
-    fn motion(&self) -> RigidMotion {
-        let center = self.tool.center();
-        RigidMotion { center, linear: self.twist.velocity(center), angular: self.twist.angular }
     }
 
     /// The velocity V at one point, in tool coordinates and tool axes.
@@ -95,6 +81,29 @@ impl<'a> RigidField<'a> {
         let mut block = VelocityBlock::REST;
         self.evaluate_into(&PointBlock::splat(point), &mut block);
         if block.is_outside[0] { DVec3::ZERO } else { block.relative.get(0) + self.twist.velocity(point) }
+    }
+}
+
+/// The field without a gauge, from the distances at `points`.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn relative_velocity(
+    tool: &Tool,
+    motion: &RigidMotion,
+    points: &PointBlock,
+    distance: &DistanceBlock,
+    out: &mut VelocityBlock,
+) {
+    let support = tool.support();
+    let profile = tool.profile().evaluate_block(&distance.value, support);
+    for lane in 0..LANES {
+        let (potential, curl) = motion.potential(points.get(lane));
+        let gradient = profile.slope[lane] / support * distance.gradient.get(lane);
+        // V − (v + ω×r) = (g − 1)(v + ω×r) + (g′/R) n × A
+        out.relative.set(lane, curl_of_product(profile.value[lane] - 1.0, gradient, potential, curl));
+    }
+    out.distance = distance.value;
+    for lane in 0..LANES {
+        out.is_outside[lane] = profile.value[lane] == 0.0 && profile.slope[lane] == 0.0;
     }
 }
 

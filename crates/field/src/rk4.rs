@@ -1,39 +1,47 @@
 //! The classical Runge-Kutta method of order four, for a block of points.
 
 use isochore_mesh::{LANES, PointBlock};
+use multiversion::multiversion;
 
-/// `points` after one step of length `time` along the stationary field that `velocity` evaluates.
+/// `points` after one step of length `time` along a field.
 ///
-/// `first` holds the velocities at `points`; the second argument of `velocity` receives those at the points of its first.
-pub(crate) fn rk4_step(
+/// `stages` are what the field is at the four places where it is asked, of which `velocity` is what counts here. The first, at
+/// `points`, must be filled in; `evaluate` fills in the others.
+pub(crate) fn rk4_step<S>(
     points: &PointBlock,
-    first: &PointBlock,
+    stages: &mut [S; 4],
     time: f64,
-    mut velocity: impl FnMut(&PointBlock, &mut PointBlock),
+    velocity: impl Fn(&S) -> &PointBlock,
+    mut evaluate: impl FnMut(&PointBlock, &mut S),
 ) -> PointBlock {
-    let mut stages = [*first, PointBlock::ZERO, PointBlock::ZERO, PointBlock::ZERO];
+    let mut place = PointBlock::ZERO;
     for (stage, share) in [(1, 0.5 * time), (2, 0.5 * time), (3, time)] {
-        let at = advanced(points, &stages[stage - 1], share);
-        velocity(&at, &mut stages[stage]);
+        advance(points, velocity(&stages[stage - 1]), share, &mut place);
+        evaluate(&place, &mut stages[stage]);
     }
-    let [k1, k2, k3, k4] = &stages;
-    let mut end = PointBlock::ZERO;
-    for lane in 0..LANES {
-        end.x[lane] = points.x[lane] + time / 6.0 * (k1.x[lane] + 2.0 * (k2.x[lane] + k3.x[lane]) + k4.x[lane]);
-        end.y[lane] = points.y[lane] + time / 6.0 * (k1.y[lane] + 2.0 * (k2.y[lane] + k3.y[lane]) + k4.y[lane]);
-        end.z[lane] = points.z[lane] + time / 6.0 * (k1.z[lane] + 2.0 * (k2.z[lane] + k3.z[lane]) + k4.z[lane]);
-    }
-    end
+    combine(points, stages.each_ref().map(velocity), time, &mut place);
+    place
 }
 
-fn advanced(points: &PointBlock, velocity: &PointBlock, time: f64) -> PointBlock {
-    let mut end = PointBlock::ZERO;
+/// Where `points` are after moving straight on for `time`.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn advance(points: &PointBlock, velocity: &PointBlock, time: f64, end: &mut PointBlock) {
     for lane in 0..LANES {
         end.x[lane] = points.x[lane] + time * velocity.x[lane];
         end.y[lane] = points.y[lane] + time * velocity.y[lane];
         end.z[lane] = points.z[lane] + time * velocity.z[lane];
     }
-    end
+}
+
+/// The step's end from its four velocities.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn combine(points: &PointBlock, [k1, k2, k3, k4]: [&PointBlock; 4], time: f64, end: &mut PointBlock) {
+    let share = time / 6.0;
+    for lane in 0..LANES {
+        end.x[lane] = points.x[lane] + share * (k1.x[lane] + 2.0 * (k2.x[lane] + k3.x[lane]) + k4.x[lane]);
+        end.y[lane] = points.y[lane] + share * (k1.y[lane] + 2.0 * (k2.y[lane] + k3.y[lane]) + k4.y[lane]);
+        end.z[lane] = points.z[lane] + share * (k1.z[lane] + 2.0 * (k2.z[lane] + k3.z[lane]) + k4.z[lane]);
+    }
 }
 
 #[cfg(test)]
@@ -52,10 +60,9 @@ mod tests {
     }
 
     fn runge_kutta(point: DVec3, time: f64) -> DVec3 {
-        let velocity = |points: &PointBlock, out: &mut PointBlock| {
-            *out = PointBlock::splat(bend(points.get(0)));
-        };
-        rk4_step(&PointBlock::splat(point), &PointBlock::splat(bend(point)), time, velocity).get(0)
+        let mut stages = [PointBlock::splat(bend(point)); 4];
+        let evaluate = |points: &PointBlock, out: &mut PointBlock| *out = PointBlock::splat(bend(points.get(0)));
+        rk4_step(&PointBlock::splat(point), &mut stages, time, |velocity| velocity, evaluate).get(0)
     }
 
     fn euler(point: DVec3, time: f64) -> DVec3 {

@@ -13,6 +13,17 @@ pub trait Distance: Debug + Send + Sync {
     /// Distances and gradients at `points`, into `out`.
     fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock);
 
+    /// [`sample_into`](Self::sample_into), perhaps in single precision and then faster: for flows, whose points are many.
+    fn sample_single_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
+        self.sample_into(points, out);
+    }
+
+    /// No value of [`sample_single_into`](Self::sample_single_into) is farther from that of [`sample_into`](Self::sample_into)
+    /// than this, model units.
+    fn single_error(&self) -> f64 {
+        0.0
+    }
+
     /// Box that holds the surface, where the distance is zero.
     fn bounds(&self) -> Aabb;
 

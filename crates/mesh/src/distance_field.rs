@@ -8,6 +8,7 @@ mod lipschitz;
 mod oriented_box;
 mod packet;
 mod patches;
+mod real;
 mod row_crossings;
 mod sampling;
 mod signs;
@@ -222,6 +223,14 @@ impl DistanceField {
 impl Distance for DistanceField {
     fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
         self.interpolant.sample_into(points, out);
+    }
+
+    fn sample_single_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
+        self.interpolant.sample_single_into(points, out);
+    }
+
+    fn single_error(&self) -> f64 {
+        self.interpolant.single_error()
     }
 
     fn bounds(&self) -> Aabb {

@@ -181,40 +181,41 @@ impl Leg {
     fn step_block(&self, step: usize, block: &[u32], points: &mut [DVec3], wake: &mut [usize]) -> u64 {
         let [begin, middle, end] = [0, 1, 2].map(|half| &*self.instants[2 * step + half]);
         let start = PointBlock::gather(&block.iter().map(|&index| points[index as usize]).collect::<Vec<_>>());
-        let mut field = FieldBlock::ZERO;
-        begin.evaluate_into(&start, &mut field);
-        let mut is_still = field.clearance.map(|clearance| clearance > 0.0);
+        let mut stages = [FieldBlock::ZERO; 4];
+        begin.evaluate_into(&start, &mut stages[0]);
         let sleep: [usize; LANES] =
-            std::array::from_fn(|lane| self.resting_steps(field.clearance[lane], start.get(lane)));
-        let mut core = field.core;
+            std::array::from_fn(|lane| self.resting_steps(stages[0].clearance[lane], start.get(lane)));
         if sleep[..block.len()].iter().all(|&steps| steps > 0) {
             block.iter().zip(sleep).for_each(|(&index, sleep)| wake[index as usize] = step + sleep);
             return block.len() as u64;
         }
-        let first = field.velocity;
-        let mut stages = [middle, middle, end].into_iter();
-        let arrived = rk4_step(&start, &first, self.step_time, |points, out| {
-            if let Some(stage) = stages.next() {
-                stage.evaluate_into(points, &mut field);
-            }
-            for lane in 0..LANES {
-                is_still[lane] &= field.clearance[lane] > 0.0;
-                if field.core[lane] != core[lane] {
-                    core[lane] = NO_CORE;
+        let mut fields = [middle, middle, end].into_iter();
+        let arrived = rk4_step(
+            &start,
+            &mut stages,
+            self.step_time,
+            |stage| &stage.velocity,
+            |points, stage| {
+                if let Some(field) = fields.next() {
+                    field.evaluate_into(points, stage);
                 }
-            }
-            *out = field.velocity;
-        });
+            },
+        );
+        let is_still = |lane: usize| stages.iter().all(|stage| stage.clearance[lane] > 0.0);
+        let core = |lane: usize| {
+            let core = stages[0].core[lane];
+            if stages.iter().all(|stage| stage.core[lane] == core) { core } else { NO_CORE }
+        };
         for (lane, &index) in block.iter().enumerate() {
             let point = &mut points[index as usize];
-            if is_still[lane] {
+            if is_still(lane) {
                 wake[index as usize] = step + sleep[lane].max(1);
             } else if arrived.get(lane) == start.get(lane) {
                 // What is held, or carried by a body that pauses: not even the sign of a zero changes.
-            } else if core[lane] == NO_CORE {
+            } else if core(lane) == NO_CORE {
                 *point = arrived.get(lane);
             } else {
-                let [from, to] = [begin, end].map(|field| Placement::from(&field.core_pose(core[lane])));
+                let [from, to] = [begin, end].map(|field| Placement::from(&field.core_pose(core(lane))));
                 *point = to.to_world(from.to_local(*point));
             }
         }

@@ -40,6 +40,9 @@ struct Segment {
     placements: Vec<Placement>,
     /// Upper bound on the speed of every point of the support.
     speed: f64,
+    /// What is given away of clearances because distances may come in single precision: of the one that is measured, and of the
+    /// one that is promised.
+    rounding: f64,
 }
 
 impl Move {
@@ -149,7 +152,8 @@ impl Segment {
         let mut placements: Vec<Placement> =
             (0..steps).map(|index| Placement::from(&start.moved(&twist, index as f64 / steps as f64))).collect();
         placements.push(Placement::from(end));
-        Ok(Self { twist, placements, speed: twist.top_speed(tool.support_bounds()) })
+        let speed = twist.top_speed(tool.support_bounds());
+        Ok(Self { twist, placements, speed, rounding: 2.0 * tool.distance().single_error() })
     }
 
     fn steps(&self) -> usize {
@@ -162,82 +166,94 @@ impl Segment {
     }
 
     fn advance(&self, tool: &Tool, travelers: &mut Travelers<'_>) -> u64 {
-        if self.speed == 0.0 {
+        let (center, radius) = travelers.ball();
+        if !self.may_touch(tool, center, radius) {
             return 0;
         }
         let field = RigidField::new(tool, self.twist);
         let bounds = tool.support_bounds();
         let mut evaluations = 0;
         travelers.wake.fill(0);
+        let mut stages = [VelocityBlock::REST; 4];
         let mut due = Vec::new();
         for step in 0..self.steps() {
             due.clear();
             for index in 0..travelers.world.len() {
-                if travelers.is_moving[index] {
-                    due.push(index as u32);
-                } else if travelers.wake[index] <= step {
-                    let local = self.placements[step].to_local(travelers.world[index]);
-                    let sleep = self.resting_steps(bounds.distance(local), local, 0.0);
-                    if sleep > 0 {
-                        travelers.wake[index] = step + sleep;
-                    } else {
-                        travelers.local[index] = local;
-                        due.push(index as u32);
+                match travelers.state[index] {
+                    State::Moving => due.push(index as u32),
+                    State::Resting if travelers.wake[index] <= step => {
+                        let local = self.placements[step].to_local(travelers.world[index]);
+                        let sleep = self.resting_steps(bounds.distance(local), local, 0.0);
+                        if sleep > 0 {
+                            travelers.wake[index] = step + sleep;
+                        } else {
+                            travelers.local[index] = local;
+                            due.push(index as u32);
+                        }
                     }
+                    State::Resting | State::Carried => {}
                 }
             }
             for block in due.chunks(LANES) {
-                evaluations += self.step_block(&field, step, block, travelers);
+                evaluations += self.step_block(&field, step, block, travelers, &mut stages);
             }
         }
-        for index in 0..travelers.world.len() {
-            if travelers.is_moving[index] {
-                travelers.world[index] = self.placements[self.steps()].to_world(travelers.local[index]);
-                travelers.is_moving[index] = false;
-            }
-        }
+        travelers.arrive(&self.placements[self.steps()]);
         evaluations
     }
 
-    /// Takes the travelers named in `block`, whose local positions are those at the beginning of `step`, to its end.
-    fn step_block(&self, field: &RigidField<'_>, step: usize, block: &[u32], travelers: &mut Travelers<'_>) -> u64 {
+    /// Takes the travelers named in `block`, whose local positions are those at the beginning of `step`, to its end. `stages` are
+    /// scratch.
+    fn step_block(
+        &self,
+        field: &RigidField<'_>,
+        step: usize,
+        block: &[u32],
+        travelers: &mut Travelers<'_>,
+        stages: &mut [VelocityBlock; 4],
+    ) -> u64 {
         let mut start = PointBlock::ZERO;
         for lane in 0..LANES {
             // Lanes beyond the block repeat its last point, and nobody reads them.
             start.set(lane, travelers.local[block[lane.min(block.len() - 1)] as usize]);
         }
-        let mut velocity = VelocityBlock::REST;
-        field.evaluate_into(&start, &mut velocity);
+        field.evaluate_into(&start, &mut stages[0]);
         let tool = field.tool();
-        let mut sleep = [0; LANES];
-        for lane in 0..block.len() {
-            if velocity.is_outside[lane] && velocity.distance[lane].is_finite() {
-                let clearance = (velocity.distance[lane] - tool.support()) / tool.distance().lipschitz();
-                sleep[lane] = self.resting_steps(clearance, start.get(lane), 0.0);
+        let (mut sleep, mut is_going_on) = ([0; LANES], false);
+        for (lane, &index) in block.iter().enumerate() {
+            let first = &stages[0];
+            if !first.is_outside[lane] {
+                // Where the field does not leave the tool behind, all stages are the first, in this step and in all that follow.
+                if first.relative.get(lane) == DVec3::ZERO {
+                    travelers.state[index as usize] = State::Carried;
+                } else {
+                    is_going_on = true;
+                }
+            } else {
+                if first.distance[lane].is_finite() {
+                    let clearance = (first.distance[lane] - tool.support()) / tool.distance().lipschitz();
+                    sleep[lane] = self.resting_steps(clearance, start.get(lane), 0.0);
+                }
+                is_going_on |= sleep[lane] == 0;
             }
         }
-        if sleep[..block.len()].iter().all(|&steps| steps > 0) {
+        if !is_going_on {
             for (lane, &index) in block.iter().enumerate() {
-                travelers.rest(index as usize, &self.placements[step], step + sleep[lane]);
+                if sleep[lane] > 0 {
+                    travelers.rest(index as usize, &self.placements[step], step + sleep[lane]);
+                }
             }
             return block.len() as u64;
         }
-        let mut is_still = velocity.is_outside;
-        let first = velocity.relative;
-        let end = rk4_step(&start, &first, self.step_time(), |points, out| {
-            field.evaluate_into(points, &mut velocity);
-            for lane in 0..LANES {
-                is_still[lane] &= velocity.is_outside[lane];
-            }
-            *out = velocity.relative;
-        });
+        let evaluate = |points: &PointBlock, stage: &mut VelocityBlock| field.evaluate_into(points, stage);
+        let end = rk4_step(&start, stages, self.step_time(), |stage| &stage.relative, evaluate);
         for (lane, &index) in block.iter().enumerate() {
             let index = index as usize;
-            if is_still[lane] {
+            if stages.iter().all(|stage| stage.is_outside[lane]) {
                 travelers.rest(index, &self.placements[step], step + sleep[lane].max(1));
-            } else {
+            } else if travelers.state[index] != State::Carried {
                 travelers.local[index] = end.get(lane);
-                travelers.is_moving[index] = true;
+                travelers.state[index] = State::Moving;
             }
         }
         4 * block.len() as u64
@@ -252,7 +268,7 @@ impl Segment {
         let time = self.step_time();
         let own_speed = self.own_speed(local, radius);
         let stage_error = time * time * self.twist.angular.length() * own_speed;
-        let slack = SLEEP_SLACK * (local.abs().max_element() + clearance);
+        let slack = SLEEP_SLACK * (local.abs().max_element() + clearance) + self.rounding;
         // The support comes no faster than its fastest point, nor than the point itself goes past the tool.
         let speed = self.speed.min(own_speed);
         let steps = (clearance - stage_error - slack) / (speed * time);
@@ -279,9 +295,12 @@ impl Segment {
     }
 
     fn may_touch(&self, tool: &Tool, center: DVec3, radius: f64) -> bool {
+        if self.speed == 0.0 {
+            return false;
+        }
         let bounds = tool.support_bounds();
         let mut step = 0;
-        while step <= self.steps() {
+        while step < self.steps() {
             let local = self.placements[step].to_local(center);
             let mut clearance = bounds.distance(local) - radius;
             if clearance <= 0.0 {
@@ -290,38 +309,61 @@ impl Segment {
                     clearance = (distance - tool.support()) / tool.distance().lipschitz() - radius;
                 }
             }
-            // Between this step and the next the support comes closer by at most this.
-            if clearance <= self.speed.min(self.own_speed(local, radius)) * self.step_time() {
-                return true;
+            match self.resting_steps(clearance, local, radius) {
+                0 => return true,
+                sleep => step += sleep,
             }
-            step += self.resting_steps(clearance, local, radius).max(1);
         }
         false
     }
 }
 
-/// Points on their way through a segment: resting in the world, or moving in tool coordinates.
+/// Points on their way through a segment.
 struct Travelers<'a> {
     world: &'a mut [DVec3],
     local: Vec<DVec3>,
-    is_moving: Vec<bool>,
+    state: Vec<State>,
     /// First step at which a resting point must be looked at again.
     wake: Vec<usize>,
+}
+
+/// What a traveler does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// It stands still in the world.
+    Resting,
+    /// It moves in tool coordinates.
+    Moving,
+    /// It stands still in tool coordinates until the end of the segment.
+    Carried,
 }
 
 impl<'a> Travelers<'a> {
     fn new(world: &'a mut [DVec3]) -> Self {
         let count = world.len();
-        Self { world, local: vec![DVec3::ZERO; count], is_moving: vec![false; count], wake: vec![0; count] }
+        Self { world, local: vec![DVec3::ZERO; count], state: vec![State::Resting; count], wake: vec![0; count] }
+    }
+
+    /// A ball that holds all where they are in the world.
+    fn ball(&self) -> (DVec3, f64) {
+        let bounds = Aabb::of(self.world.iter().copied());
+        (bounds.center(), 0.5 * bounds.size().length())
     }
 
     /// Lets a point rest where it is at the beginning of the step with this placement.
     fn rest(&mut self, index: usize, placement: &Placement, wake: usize) {
-        if self.is_moving[index] {
+        if self.state[index] != State::Resting {
             self.world[index] = placement.to_world(self.local[index]);
-            self.is_moving[index] = false;
+            self.state[index] = State::Resting;
         }
         self.wake[index] = wake;
+    }
+
+    /// Lets all rest that come with the tool, whose way ends with this placement.
+    fn arrive(&mut self, placement: &Placement) {
+        for index in 0..self.world.len() {
+            self.rest(index, placement, 0);
+        }
     }
 }
 

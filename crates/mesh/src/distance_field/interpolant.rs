@@ -1,80 +1,124 @@
-use glam::DVec3;
+mod columns;
+mod kernel;
+
+#[cfg(test)]
+mod tests;
+
+use multiversion::{multiversion, target::match_target};
+use rayon::prelude::*;
 
 use super::Grid;
 use super::lipschitz::lipschitz;
-use super::spline::{coefficients, weight_derivatives, weights};
-use crate::{DistanceBlock, LANES, PointBlock};
+use super::spline::coefficients;
+use crate::{DistanceBlock, PointBlock};
+use kernel::Lattice;
 
 /// The cubic spline through the samples of a grid.
 #[derive(Debug, Clone)]
 pub(super) struct Interpolant {
-    origin: DVec3,
-    cell: f64,
-    dims: [usize; 3],
+    grid: Grid,
     coefficients: Vec<f32>,
     lipschitz: f64,
+    /// No two coefficients of a stencil differ by more.
+    spread: f64,
 }
+
+/// Bound on the rounding of values in `f32` lanes, as a share of what the coefficients around the point differ by.
+///
+/// Roundings of u = 2⁻²⁴ move the four weights along an axis by 17u together; each of three sums of products, of which the first
+/// is over rounded differences, adds 5u or 4u: 3 · 17u + 5u + 4u + 4u, and a little for what is of second order. Smaller: points
+/// could be woken too late. Larger: they are woken needlessly early.
+const VALUE_ROUNDING: f64 = 65.0 / (1 << 24) as f64;
 
 impl Interpolant {
     pub(super) fn new(grid: &Grid, samples: &[f32]) -> Self {
         let coefficients = coefficients(samples, grid.dims);
         let lipschitz = lipschitz(grid, &coefficients);
-        Self { origin: grid.origin, cell: grid.cell, dims: grid.dims, coefficients, lipschitz }
+        let spread = f64::from(largest_difference(&coefficients, grid.dims)) * STENCIL_STEPS;
+        Self { grid: *grid, coefficients, lipschitz, spread }
     }
 
     pub(super) fn lipschitz(&self) -> f64 {
         self.lipschitz
     }
 
+    /// Values and gradients to the last digits of `f64`.
     pub(super) fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
-        *out = DistanceBlock::FAR;
-        for lane in 0..LANES {
-            if let Some((value, gradient)) = self.sample(points.get(lane)) {
-                out.value[lane] = value;
-                out.gradient.set(lane, gradient);
-            }
+        match self.lattice() {
+            Some(lattice) => sample_double(&lattice, points, out),
+            None => *out = DistanceBlock::FAR,
         }
     }
 
-    /// Value and gradient; none in cells that lack neighbors, and outside the grid.
+    /// Upper bound on the difference between values of `sample_single_into` and `sample_into`.
+    pub(super) fn single_error(&self) -> f64 {
+        VALUE_ROUNDING * self.spread
+    }
+
+    /// The same in `f32` lanes.
+    pub(super) fn sample_single_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
+        match self.lattice() {
+            Some(lattice) => sample_single(&lattice, points, out),
+            None => *out = DistanceBlock::FAR,
+        }
+    }
+
+    /// None where no cell has all its neighbors.
     #[inline]
-    fn sample(&self, point: DVec3) -> Option<(f64, DVec3)> {
-        let [nx, ny, nz] = self.dims;
-        let local = ((point - self.origin) / self.cell).to_array();
-        let mut base = [0; 3];
-        let mut weight = [[0.0; 4]; 3];
-        let mut slope = [[0.0; 4]; 3];
-        for axis in 0..3 {
-            let (x, nodes) = (local[axis], self.dims[axis]);
-            if !(x >= 1.0 && x <= nodes as f64 - 2.0) {
-                return None;
-            }
-            // The upper end belongs to the last cell that has all neighbors.
-            let cell = (x as usize).min(nodes - 3);
-            let t = x - cell as f64;
-            base[axis] = cell - 1;
-            weight[axis] = weights(t);
-            slope[axis] = weight_derivatives(t);
+    fn lattice(&self) -> Option<Lattice<'_>> {
+        let Grid { origin, cell, dims } = self.grid;
+        // Grids have no more nodes than a `u32` can tell.
+        dims.iter().all(|&nodes| nodes >= 4).then(|| Lattice {
+            origin: origin.to_array(),
+            cells_per_length: 1.0 / cell,
+            dims: dims.map(|nodes| nodes as u32),
+            coefficients: &self.coefficients,
+        })
+    }
+}
+
+/// Steps along axes from one end of a stencil to the other.
+const STENCIL_STEPS: f64 = 9.0;
+
+/// The largest difference of coefficients that are neighbors along an axis.
+fn largest_difference(coefficients: &[f32], [nx, ny, _]: [usize; 3]) -> f32 {
+    let largest = |one: &[f32], other: &[f32]| {
+        one.iter()
+            .zip(other)
+            .fold(0.0, |largest: f32, (a, b)| if (a - b).abs() > largest { (a - b).abs() } else { largest })
+    };
+    let rows = coefficients.par_chunks(nx).enumerate().map(|(row, here)| {
+        let along_y = if (row + 1) % ny == 0 { here } else { &coefficients[(row + 1) * nx..] };
+        let along_z = coefficients.get((row + ny) * nx..).unwrap_or_default();
+        largest(here, &here[1..]).max(largest(here, along_y)).max(largest(here, along_z))
+    });
+    rows.reduce(|| 0.0, f32::max)
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+#[expect(unsafe_code, reason = "rows are loaded as the target allows")]
+fn sample_single(lattice: &Lattice<'_>, points: &PointBlock, out: &mut DistanceBlock) {
+    // SAFETY: the machine has the target's features.
+    unsafe {
+        match_target! {
+            "x86_64+avx512f" => lattice.sample::<f32, columns::Avx512>(points, out),
+            "x86_64+avx2" => lattice.sample::<f32, columns::Avx>(points, out),
+            "x86_64" => lattice.sample::<f32, columns::Sse>(points, out),
+            _ => lattice.sample::<f32, columns::Plain>(points, out),
         }
-        let [mut value, mut along_y, mut along_z] = [[0.0; 4]; 3];
-        for k in 0..4 {
-            for j in 0..4 {
-                let start = ((base[2] + k) * ny + base[1] + j) * nx + base[0];
-                let row = &self.coefficients[start..start + 4];
-                let straight = weight[1][j] * weight[2][k];
-                let across_y = slope[1][j] * weight[2][k];
-                let across_z = weight[1][j] * slope[2][k];
-                for i in 0..4 {
-                    let coefficient = f64::from(row[i]);
-                    value[i] += straight * coefficient;
-                    along_y[i] += across_y * coefficient;
-                    along_z[i] += across_z * coefficient;
-                }
-            }
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+#[expect(unsafe_code, reason = "rows are loaded as the target allows")]
+fn sample_double(lattice: &Lattice<'_>, points: &PointBlock, out: &mut DistanceBlock) {
+    // SAFETY: the machine has the target's features.
+    unsafe {
+        match_target! {
+            "x86_64+avx512f" => lattice.sample::<f64, columns::Avx512>(points, out),
+            "x86_64+avx2" => lattice.sample::<f64, columns::Avx>(points, out),
+            "x86_64" => lattice.sample::<f64, columns::Sse>(points, out),
+            _ => lattice.sample::<f64, columns::Plain>(points, out),
         }
-        debug_assert!(base[2] + 4 <= nz);
-        let dot = |a: &[f64; 4], b: &[f64; 4]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
-        let gradient = DVec3::new(dot(&value, &slope[0]), dot(&along_y, &weight[0]), dot(&along_z, &weight[0]));
-        Some((dot(&value, &weight[0]), gradient / self.cell))
     }
 }

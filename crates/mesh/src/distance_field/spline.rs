@@ -6,6 +6,8 @@
 
 use rayon::prelude::*;
 
+use super::real::Real;
+
 /// The pole of the cubic spline filter, √3 − 2.
 const POLE: f64 = -0.267_949_192_431_122_7;
 
@@ -82,23 +84,25 @@ fn filter(lines: &mut [f64], width: usize) {
 }
 
 /// Weights of the four coefficients around `t`, the part of the cell passed, from 0 to 1.
-#[inline]
-pub(super) fn weights(t: f64) -> [f64; 4] {
-    let s = 1.0 - t;
-    let first = s * s * s / 6.0;
-    let last = t * t * t / 6.0;
-    let second = 2.0 / 3.0 - 0.5 * t * t * (1.0 + s);
+#[inline(always)]
+pub(super) fn weights<T: Real>(t: T) -> [T; 4] {
+    let [half, sixth, two_thirds] = [0.5, 1.0 / 6.0, 2.0 / 3.0].map(T::of);
+    let s = T::of(1.0) - t;
+    let first = s * s * s * sixth;
+    let last = t * t * t * sixth;
+    let second = two_thirds - half * t * t * (T::of(1.0) + s);
     // They sum to one, also after rounding: the field of a constant is that constant.
-    [first, second, 1.0 - first - second - last, last]
+    [first, second, T::of(1.0) - first - second - last, last]
 }
 
 /// Derivatives of [`weights`] with respect to `t`.
-#[inline]
-pub(super) fn weight_derivatives(t: f64) -> [f64; 4] {
-    let s = 1.0 - t;
-    let first = -0.5 * s * s;
-    let last = 0.5 * t * t;
-    let second = t * (1.5 * t - 2.0);
+#[inline(always)]
+pub(super) fn weight_derivatives<T: Real>(t: T) -> [T; 4] {
+    let half = T::of(0.5);
+    let s = T::of(1.0) - t;
+    let first = -half * s * s;
+    let last = half * t * t;
+    let second = t * (T::of(1.5) * t - T::of(2.0));
     [first, second, -(first + second + last), last]
 }
 

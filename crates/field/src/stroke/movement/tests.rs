@@ -1,4 +1,6 @@
-use isochore_mesh::{Capsule, Distance, RoundedBox, Sphere};
+use isochore_mesh::{
+    Capsule, Distance, DistanceField, DistanceFieldOptions, Padding, RoundedBox, Silent, Sphere, primitives,
+};
 
 use super::*;
 use crate::{Profile, rotation_from_vector};
@@ -173,10 +175,18 @@ fn press_and_lift_return() {
     }
 }
 
-/// Points all around a tool that turns and travels, carried with sleeping and by looking at every point at every step.
 #[test]
 fn sleeping_changes_no_bit() {
-    let bar = tool(RoundedBox::new(DVec3::new(0.5, 0.1, 0.2), 0.05).unwrap(), 0.2, Profile::Quintic);
+    let half_extents = DVec3::new(0.5, 0.1, 0.2);
+    sleeping_changes_no_bit_around(tool(RoundedBox::new(half_extents, 0.05).unwrap(), 0.2, Profile::Quintic));
+    let mesh = primitives::box_mesh(half_extents, [1, 1, 1]);
+    let options = DistanceFieldOptions { resolution: 32, padding: Padding::Reach(0.2), ..Default::default() };
+    let sampled = DistanceField::new(&mesh, &options, &Silent).unwrap();
+    sleeping_changes_no_bit_around(tool(sampled, 0.2, Profile::Quintic));
+}
+
+/// Points all around a tool that turns and travels, carried with sleeping and by looking at every point at every step.
+fn sleeping_changes_no_bit_around(bar: Arc<Tool>) {
     let keys = vec![
         Pose { rotation: rotation_from_vector(DVec3::new(0.3, 0.0, 0.0)), translation: DVec3::new(-1.0, 0.2, 0.0) },
         Pose { rotation: rotation_from_vector(DVec3::new(0.3, 1.5, 0.9)), translation: DVec3::new(0.6, 0.0, 0.3) },
@@ -195,20 +205,17 @@ fn sleeping_changes_no_bit() {
     for segment in &stroke.segments {
         let field = RigidField::new(&stroke.tool, segment.twist);
         let mut travelers = Travelers::new(&mut wakeful);
+        let mut stages = [VelocityBlock::REST; 4];
         for step in 0..segment.steps() {
             for index in 0..travelers.world.len() {
-                if !travelers.is_moving[index] {
+                if travelers.state[index] == State::Resting {
                     travelers.local[index] = segment.placements[step].to_local(travelers.world[index]);
                 }
                 // Through the same step, but never asked whether it may sleep.
-                segment.step_block(&field, step, &[index as u32], &mut travelers);
+                segment.step_block(&field, step, &[index as u32], &mut travelers, &mut stages);
             }
         }
-        for index in 0..travelers.world.len() {
-            if travelers.is_moving[index] {
-                travelers.world[index] = segment.placements[segment.steps()].to_world(travelers.local[index]);
-            }
-        }
+        travelers.arrive(&segment.placements[segment.steps()]);
     }
     assert_eq!(sleeping, wakeful);
     let moved = points.iter().zip(&sleeping).filter(|(a, b)| a != b).count();

@@ -1,0 +1,151 @@
+#![expect(unsafe_code, reason = "the kernel is called as it is compiled for narrower machines")]
+
+use glam::DVec3;
+
+use super::*;
+use crate::{
+    LANES,
+    distance_field::{Grid, interpolant::columns::Plain, spline},
+};
+
+/// Bound on the rounding of slopes in `f32` lanes, over cells and what the coefficients differ by: as [`VALUE_ROUNDING`], but along
+/// one axis the weights are those of the derivative, 1.5 together, which roundings move by 21u.
+const SLOPE_ROUNDING: f64 = 93.0 / (1 << 24) as f64;
+
+/// Coefficients like those of a distance with kinks, far from zero: slopes of up to one, rough.
+fn interpolant() -> Interpolant {
+    let dims = [19, 17, 23];
+    let grid = Grid { origin: DVec3::new(-3.0, 2.0, 0.5), cell: 0.1, dims };
+    let samples: Vec<f32> = (0..grid.len())
+        .map(|index| {
+            let from = grid.node_at(index) - DVec3::new(-2.1, 2.7, 1.5);
+            (40.0 + from.abs().max_element() + 0.001 * libm::sin(7.0 * index as f64)) as f32
+        })
+        .collect();
+    Interpolant::new(&grid, &samples)
+}
+
+/// Points inside and beyond, on nodes and on the border of what can be sampled, and what is not finite.
+fn blocks(interpolant: &Interpolant) -> Vec<PointBlock> {
+    let Grid { origin, cell, dims } = interpolant.grid;
+    let size = cell * DVec3::from_array(dims.map(|nodes| nodes as f64 - 1.0));
+    let scattered = (1..4000).map(|index| {
+        let part = (f64::from(index) * DVec3::new(0.819_172_513, 0.671_043_607, 0.549_700_478)).fract();
+        origin + size * (1.1 * part - 0.05)
+    });
+    let nodes = (0..interpolant.grid.len()).map(|index| interpolant.grid.node_at(index));
+    let wild = [DVec3::NAN, DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::splat(1e300), origin + DVec3::splat(f64::NAN)];
+    let points: Vec<DVec3> = scattered.chain(nodes).chain(wild).collect();
+    points.chunks(LANES).map(PointBlock::gather).collect()
+}
+
+/// All numbers of a block, as bits.
+fn bits(block: &DistanceBlock) -> [[u64; LANES]; 4] {
+    let DistanceBlock { value, gradient: PointBlock { x, y, z } } = block;
+    [value, x, y, z].map(|numbers| numbers.map(f64::to_bits))
+}
+
+type Kernel = fn(&Lattice<'_>, &PointBlock, &mut DistanceBlock);
+
+/// The dispatched kernel beside those of narrower targets that this machine can run.
+fn agree(dispatched: Kernel, narrow: &[(&str, Kernel)]) {
+    let interpolant = interpolant();
+    let lattice = interpolant.lattice().unwrap();
+    let (mut expected, mut found) = (DistanceBlock::FAR, DistanceBlock::FAR);
+    for points in blocks(&interpolant) {
+        dispatched(&lattice, &points, &mut expected);
+        for (name, kernel) in narrow {
+            kernel(&lattice, &points, &mut found);
+            assert_eq!(bits(&found), bits(&expected), "{name} at {points:?}");
+        }
+    }
+}
+
+macro_rules! narrow_kernels {
+    ($real:ty) => {{
+        // SAFETY: every machine has what this needs.
+        let plain: Kernel = |lattice, points, out| unsafe { lattice.sample::<$real, Plain>(points, out) };
+        #[cfg(not(target_arch = "x86_64"))]
+        let narrow = vec![("plain", plain)];
+        #[cfg(target_arch = "x86_64")]
+        let narrow = {
+            // SAFETY: every x86-64 has SSE.
+            let sse: Kernel = |lattice, points, out| unsafe { lattice.sample::<$real, columns::Sse>(points, out) };
+            #[target_feature(enable = "avx2")]
+            fn on_avx2(lattice: &Lattice<'_>, points: &PointBlock, out: &mut DistanceBlock) {
+                // SAFETY: called only where there is AVX2.
+                unsafe { lattice.sample::<$real, columns::Avx>(points, out) };
+            }
+            let mut narrow = vec![("plain", plain), ("sse", sse)];
+            if std::arch::is_x86_feature_detected!("avx2") {
+                // SAFETY: there is AVX2.
+                narrow.push(("avx2", |lattice, points, out| unsafe { on_avx2(lattice, points, out) }));
+            }
+            narrow
+        };
+        narrow
+    }};
+}
+
+#[test]
+fn bits_do_not_depend_on_the_target() {
+    agree(sample_single, &narrow_kernels!(f32));
+    agree(sample_double, &narrow_kernels!(f64));
+}
+
+#[test]
+fn single_precision_keeps_its_bounds() {
+    let interpolant = interpolant();
+    let (mut double, mut single) = (DistanceBlock::FAR, DistanceBlock::FAR);
+    let (mut worst_value, mut worst_slope) = (0.0_f64, 0.0_f64);
+    for points in blocks(&interpolant) {
+        interpolant.sample_into(&points, &mut double);
+        interpolant.sample_single_into(&points, &mut single);
+        for lane in 0..LANES {
+            if double.value[lane].is_infinite() {
+                assert_eq!(single.value[lane], f64::INFINITY);
+                assert_eq!(single.gradient.get(lane), DVec3::ZERO);
+            } else {
+                worst_value = worst_value.max((double.value[lane] - single.value[lane]).abs());
+                let off = (double.gradient.get(lane) - single.gradient.get(lane)).abs();
+                worst_slope = worst_slope.max(off.max_element());
+            }
+        }
+    }
+    let slope_bound = SLOPE_ROUNDING * interpolant.spread / interpolant.grid.cell;
+    assert!(worst_value <= interpolant.single_error(), "{worst_value:e} of {:e}", interpolant.single_error());
+    assert!(worst_slope <= slope_bound, "{worst_slope:e} of {slope_bound:e}");
+    // Bounds far from the truth would be useless. Roundings are random, and stencils seldom as steep as the steepest.
+    assert!(worst_value > 5e-4 * interpolant.single_error(), "{worst_value:e} of {:e}", interpolant.single_error());
+    assert!(worst_slope > 5e-4 * slope_bound, "{worst_slope:e} of {slope_bound:e}");
+}
+
+/// The kernel against the sum over all 64 coefficients, in any order.
+#[test]
+fn double_precision_is_the_sum_of_products() {
+    let interpolant = interpolant();
+    let Grid { origin, cell, dims: [nx, ny, _] } = interpolant.grid;
+    let mut block = DistanceBlock::FAR;
+    for points in blocks(&interpolant).iter().take(100) {
+        interpolant.sample_into(points, &mut block);
+        for lane in (0..LANES).filter(|&lane| block.value[lane].is_finite()) {
+            let local = (points.get(lane) - origin) / cell;
+            let (first, passed) = (local.floor().to_array().map(|x| x as usize - 1), local.fract().to_array());
+            let (weight, slope) = (passed.map(spline::weights), passed.map(spline::weight_derivatives));
+            let (mut value, mut gradient) = (0.0, DVec3::ZERO);
+            for (i, j, k) in (0..64).map(|index| (index % 4, index / 4 % 4, index / 16)) {
+                let index = ((first[2] + k) * ny + first[1] + j) * nx + first[0] + i;
+                let coefficient = f64::from(interpolant.coefficients[index]);
+                let [x, y, z] = [weight[0][i], weight[1][j], weight[2][k]];
+                value += coefficient * x * y * z;
+                gradient +=
+                    coefficient * DVec3::new(slope[0][i] * y * z, x * slope[1][j] * z, x * y * slope[2][k]) / cell;
+            }
+            // Sums of 64 products of coefficients near 41, on both sides; over a cell for the gradient. The part of the cell passed
+            // is rounded too, which shows where the slope changes, by up to 100 a unit of length.
+            assert!((block.value[lane] - value).abs() < 64.0 * 41.0 * f64::EPSILON, "{} {value}", block.value[lane]);
+            let off = (block.gradient.get(lane) - gradient).length();
+            assert!(off < 64.0 * 41.0 * f64::EPSILON / cell, "{off:e}");
+        }
+    }
+}

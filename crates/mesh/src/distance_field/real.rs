@@ -1,0 +1,56 @@
+//! The two precisions that kernels are written for.
+
+use std::ops::{Add, AddAssign, Mul, Neg, Sub};
+
+/// `f32` or `f64`.
+pub(super) trait Real:
+    Copy + Add<Output = Self> + AddAssign + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    const ZERO: Self;
+
+    /// The nearest number.
+    fn of(value: f64) -> Self;
+
+    /// The same number; every precision has those of `f32`.
+    fn of_single(value: f32) -> Self;
+
+    fn to_f64(self) -> f64;
+}
+
+impl Real for f32 {
+    const ZERO: Self = 0.0;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    #[inline(always)]
+    fn of_single(value: f32) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn of_single(value: f32) -> Self {
+        Self::from(value)
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}
