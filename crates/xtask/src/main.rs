@@ -5,6 +5,7 @@
 #[cfg(test)]
 mod arrows;
 mod bench;
+mod capi;
 mod data;
 mod environment;
 mod gallery;
@@ -19,10 +20,10 @@ use shell::TaskResult;
 
 type Task = (&'static str, &'static str, fn() -> TaskResult);
 
-const TASKS: [Task; 6] = [
+const TASKS: [Task; 7] = [
     (
         "test",
-        "formatting, lints, all tests in Rust and Python, then the oracle: what must pass before a change goes in",
+        "formatting, lints, all tests in Rust, C and Python, then the oracle: what must pass before a change goes in",
         test::run_all,
     ),
     (
@@ -35,6 +36,7 @@ const TASKS: [Task; 6] = [
         "run the programs of the folder `bench`, or those named, and write the table of the README",
         bench::measure_all,
     ),
+    ("capi", "install the library for C with its header under a prefix, by default target/capi", capi::install),
     ("python", "install the Python package into the target folder and run its tests", python::test_package),
     ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
     ("gallery", "run all recipes and examples of the figures, and show them in gallery/gallery.md", gallery::draw_all),

@@ -1,15 +1,16 @@
 //! Everything that must pass before a change goes in.
 
 use crate::{
-    oracle, python,
+    capi, oracle, python,
     shell::{TaskResult, cargo, run},
 };
 
-/// Checks formatting and lints, runs all tests, then the oracle, then the Python package.
+/// Checks formatting and lints, runs all tests, then the oracle, then the library for C and the Python package.
 pub(crate) fn run_all() -> TaskResult {
     run(&mut cargo(&["fmt", "--all", "--check"]))?;
     run(&mut cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--quiet", "--", "--deny", "warnings"]))?;
     run(&mut cargo(&["test", "--workspace", "--locked", "--quiet"]))?;
     oracle::run_judges()?;
+    capi::test_programs()?;
     python::test_package()
 }

@@ -1,0 +1,134 @@
+//! Status codes, and the message of the last error of each thread.
+
+use std::{
+    cell::RefCell,
+    ffi::{CString, c_char},
+    panic::{AssertUnwindSafe, catch_unwind},
+};
+
+use isochore_mesh::{
+    Cancelled, MeshError, SelfIntersectionError,
+    io::{ParseError, ReadError, WriteError},
+};
+use isochore_sculpt::{ReplayError, recipe::RecipeError};
+
+/// What came of a call.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// It did its work.
+    Ok = 0,
+    /// An argument is NULL where it must not be, is no text in UTF-8, or out of range.
+    Argument = 1,
+    /// A mesh cannot be worked with.
+    Mesh = 2,
+    /// A recipe or the description of a tool cannot be followed.
+    Recipe = 3,
+    /// A file cannot be read or written.
+    File = 4,
+    /// The progress function asked to stop.
+    Cancelled = 5,
+    /// A fault of isochore itself; the handles of the call must only be given back.
+    Internal = 6,
+}
+
+/// A status other than `Ok`, and words for it.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    pub(crate) status: Status,
+    pub(crate) message: String,
+}
+
+impl Failure {
+    pub(crate) fn new(status: Status, message: impl ToString) -> Self {
+        Self { status, message: message.to_string() }
+    }
+
+    pub(crate) fn argument(message: impl ToString) -> Self {
+        Self::new(Status::Argument, message)
+    }
+}
+
+thread_local! {
+    static LAST_ERROR: RefCell<CString> = RefCell::default();
+}
+
+/// What went wrong in the last call on this thread that returned another status than OK, or an empty text. Never NULL; holds
+/// until the next such call.
+#[unsafe(no_mangle)]
+pub extern "C" fn isochore_last_error() -> *const c_char {
+    LAST_ERROR.with_borrow(|message| message.as_ptr())
+}
+
+/// Does `work`; keeps panics on this side of the border and remembers the message of what fails.
+pub(crate) fn guarded(work: impl FnOnce() -> Result<(), Failure>) -> Status {
+    // Handles that a panic left half changed are not looked at again: `Status::Internal` says so.
+    let failure = match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(Ok(())) => return Status::Ok,
+        Ok(Err(failure)) => failure,
+        Err(panic) => {
+            let message = panic.downcast_ref::<String>().map(String::as_str);
+            let message = message.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("unknown");
+            Failure::new(Status::Internal, format!("internal fault: {message}"))
+        }
+    };
+    let text = CString::new(failure.message.replace('\0', " ")).unwrap_or_default();
+    LAST_ERROR.with_borrow_mut(|message| *message = text);
+    failure.status
+}
+
+impl From<Cancelled> for Failure {
+    fn from(error: Cancelled) -> Self {
+        Self::new(Status::Cancelled, error)
+    }
+}
+
+impl From<MeshError> for Failure {
+    fn from(error: MeshError) -> Self {
+        Self::new(Status::Mesh, error)
+    }
+}
+
+impl From<ParseError> for Failure {
+    fn from(error: ParseError) -> Self {
+        Self::new(Status::Mesh, error)
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        let status = if let ReadError::Io { .. } = error { Status::File } else { Status::Mesh };
+        Self::new(status, error)
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        let status = if let WriteError::Io { .. } = error { Status::File } else { Status::Mesh };
+        Self::new(status, error)
+    }
+}
+
+impl From<SelfIntersectionError> for Failure {
+    fn from(error: SelfIntersectionError) -> Self {
+        match error {
+            SelfIntersectionError::Cancelled(cancelled) => cancelled.into(),
+            error => Self::new(Status::Mesh, error),
+        }
+    }
+}
+
+impl From<RecipeError> for Failure {
+    fn from(error: RecipeError) -> Self {
+        Self::new(Status::Recipe, error)
+    }
+}
+
+impl From<ReplayError> for Failure {
+    fn from(error: ReplayError) -> Self {
+        match error {
+            ReplayError::Cancelled(cancelled) => cancelled.into(),
+            error => Self::new(Status::Recipe, error),
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! The library for C: built, installed under a prefix and tried as its users would.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use crate::shell::{TaskResult, cargo, run, target, workspace};
+
+/// Warnings are errors to users of headers who want it so.
+const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
+
+/// Builds the library, and puts it with its header and its file for pkg-config under the prefix that the command line names, by
+/// default into the target folder.
+pub(crate) fn install() -> TaskResult {
+    let prefix = std::env::args().nth(2).map_or_else(|| target().join("capi"), PathBuf::from);
+    install_under(&prefix)
+}
+
+fn install_under(prefix: &Path) -> TaskResult {
+    run(&mut cargo(&["build", "--release", "--locked", "--quiet", "--package", "isochore-capi"]))?;
+    let [library, include] = ["lib", "include"].map(|name| prefix.join(name));
+    fs::create_dir_all(library.join("pkgconfig"))?;
+    fs::create_dir_all(&include)?;
+    let prefix = prefix.canonicalize()?;
+    for name in ["libisochore.so", "libisochore.a"] {
+        fs::copy(target().join("release").join(name), library.join(name))?;
+    }
+    let source = workspace().join("crates/capi");
+    cbindgen::generate(&source)?.write_to_file(include.join("isochore.h"));
+    let description = fs::read_to_string(source.join("isochore.pc.in"))?
+        .replace("@prefix@", &prefix.display().to_string())
+        .replace("@version@", env!("CARGO_PKG_VERSION"));
+    fs::write(library.join("pkgconfig/isochore.pc"), description)?;
+    Ok(())
+}
+
+/// Installs into the target folder, builds the example and the tests with what pkg-config says, as C and as C++, and runs them, the tests
+/// also under valgrind where it is installed.
+pub(crate) fn test_programs() -> TaskResult {
+    let prefix = target().join("capi");
+    install_under(&prefix)?;
+    let flags = pkg_config_flags(&prefix)?;
+    let programs = [
+        ("cc", "-std=c11", "examples/press.c"),
+        ("cc", "-std=c11", "tests/border.c"),
+        ("c++", "-xc++", "examples/press.c"),
+    ];
+    for (compiler, language, source) in programs {
+        let is_test = source.starts_with("tests");
+        let program = prefix.join(format!("{}-{compiler}", source.replace(['/', '.'], "_")));
+        let mut compile = Command::new(compiler);
+        compile.args(STRICT).arg(language).arg(workspace().join("crates/capi").join(source));
+        run(compile.arg("-xnone").arg("-o").arg(&program).args(&flags))?;
+        let mesh = prefix.join("written.obj");
+        run(Command::new(&program).arg(&mesh).env("LD_LIBRARY_PATH", prefix.join("lib")))?;
+        if is_test && has("valgrind") {
+            let mut memory_check = Command::new("valgrind");
+            memory_check.args([
+                "--quiet",
+                "--leak-check=full",
+                "--errors-for-leak-kinds=definite",
+                "--error-exitcode=1",
+            ]);
+            run(memory_check.arg(&program).arg(&mesh).env("LD_LIBRARY_PATH", prefix.join("lib")))?;
+        }
+    }
+    Ok(())
+}
+
+fn has(program: &str) -> bool {
+    Command::new(program).arg("--version").output().is_ok()
+}
+
+/// What pkg-config tells compilers; where it is missing, what it would tell.
+fn pkg_config_flags(prefix: &Path) -> TaskResult<Vec<String>> {
+    let asked = Command::new("pkg-config")
+        .args(["--cflags", "--libs", "isochore"])
+        .env("PKG_CONFIG_PATH", prefix.join("lib/pkgconfig"))
+        .output();
+    match asked {
+        Ok(output) if output.status.success() => {
+            Ok(String::from_utf8(output.stdout)?.split_whitespace().map(str::to_owned).collect())
+        }
+        Ok(output) => Err(String::from_utf8_lossy(&output.stderr).into_owned().into()),
+        Err(_) => {
+            let [include, library] = ["include", "lib"].map(|name| prefix.join(name).display().to_string());
+            Ok(vec![format!("-I{include}"), format!("-L{library}"), "-lisochore".to_owned()])
+        }
+    }
+}
