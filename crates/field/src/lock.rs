@@ -9,16 +9,21 @@ use crate::balance::balance;
 
 /// What the lock did.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Lock {
+pub struct Lock {
     /// Longest displacement of a vertex, model units.
-    pub(crate) max_shift: f64,
+    pub max_shift: f64,
     /// Largest ratio of a vertex' displacement to the shortest edge at it.
-    pub(crate) max_shift_per_edge: f64,
+    pub max_shift_per_edge: f64,
 }
 
 /// Moves `image` so that its volume is `volume`. None, and nothing moved, when nothing had moved or the displacement has no
 /// hold on the volume, so that no root brings it back.
-pub(crate) fn lock_volume(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], volume: f64) -> Option<Lock> {
+///
+/// `rest` is where the vertices set out; those that have not moved from there stay.
+///
+/// # Panics
+/// If an index is out of range, or `rest` is not as long as `image`.
+pub fn lock_volume(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], volume: f64) -> Option<Lock> {
     let directions = directions(rest, image, triangles)?;
     let unlocked = image.to_vec();
     balance(image, &directions, triangles, volume)?;

@@ -56,5 +56,7 @@ pub use self_intersection::{SelfIntersectionError, SelfIntersections};
 pub use shapes::{Capsule, Ellipsoid, HalfSpace, RoundedBox, ShapeError, Sphere, Torus};
 pub use surface_tree::{SurfaceHit, SurfaceTree};
 pub use topology::Topology;
-pub use tri_mesh::{CornerAttributes, SubTriangle, Subdivision, TriMesh, VertexAttributes};
+pub use tri_mesh::{
+    CornerAttributes, Origin, Resampling, SubTriangle, Subdivision, TriMesh, VertexAttributes, VertexOrigin,
+};
 pub use winding_number::WindingNumber;

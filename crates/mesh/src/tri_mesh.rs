@@ -2,6 +2,7 @@
 
 mod attributes;
 mod normals;
+mod resampled;
 mod subdivided;
 mod transformed;
 mod welded;
@@ -9,6 +10,7 @@ mod welded;
 use glam::DVec3;
 
 pub use attributes::{CornerAttributes, VertexAttributes};
+pub use resampled::{Origin, Resampling, VertexOrigin};
 pub use subdivided::{SubTriangle, Subdivision};
 
 use crate::Assets;

@@ -34,6 +34,7 @@ mod replay;
 mod report;
 mod scene;
 pub mod schema;
+pub mod session;
 
 pub use recipe::Recipe;
 pub use replay::{Meshes, PointReplay, Replay, ReplayError, replay, replay_points};

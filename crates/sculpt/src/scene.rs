@@ -1,10 +1,11 @@
 //! The objects that a recipe's plain data describe.
 
-mod mask;
+pub(crate) mod mask;
 mod pose;
 mod rates;
 mod region;
 mod strip;
+mod tool;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -324,7 +325,7 @@ fn profile(profile: Profile) -> field::Profile {
     }
 }
 
-fn pose(key: &Key) -> field::Pose {
+pub(crate) fn pose(key: &Key) -> field::Pose {
     field::Pose { rotation: rotation(key.rotate), translation: DVec3::from_array(key.at) }
 }
 

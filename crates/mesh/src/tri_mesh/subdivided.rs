@@ -93,7 +93,7 @@ impl TriMesh {
 
 /// Barycentric combination. Corners of weight zero are left out, so that a value on an edge depends on that edge alone
 /// and has the same bits seen from both of its triangles.
-fn interpolate<T>(corners: &[T; 3], weights: DVec3) -> T
+pub(super) fn interpolate<T>(corners: &[T; 3], weights: DVec3) -> T
 where
     T: Copy + Default + PartialEq + Add<Output = T> + Mul<f64, Output = T>,
 {
@@ -126,18 +126,20 @@ fn interpolate_normals(normals: &[[DVec3; 3]], children: &[SubTriangle]) -> Vec<
     }
     let at = |child: &SubTriangle| {
         let parent = &normals[child.parent as usize];
-        child.corners.map(|weights| {
-            if let Some(kept) = weights.to_array().iter().position(|&weight| weight == 1.0) {
-                return parent[kept];
-            }
-            // Opposite normals may cancel; then the heaviest corner's is as good as any.
-            interpolate(parent, weights).try_normalize().unwrap_or(parent[weights.max_position()])
-        })
+        child.corners.map(|weights| interpolate_normal(parent, weights))
     };
     children.iter().map(at).collect()
 }
 
-fn interpolate_influences(corners: [&[(u32, f64)]; 3], weights: DVec3, most: usize) -> Vec<(u32, f64)> {
+/// The unit normal between three; where they cancel, that of the heaviest corner, which is as good as any.
+pub(super) fn interpolate_normal(corners: &[DVec3; 3], weights: DVec3) -> DVec3 {
+    if let Some(kept) = weights.to_array().iter().position(|&weight| weight == 1.0) {
+        return corners[kept];
+    }
+    interpolate(corners, weights).try_normalize().unwrap_or(corners[weights.max_position()])
+}
+
+pub(super) fn interpolate_influences(corners: [&[(u32, f64)]; 3], weights: DVec3, most: usize) -> Vec<(u32, f64)> {
     let mut influences: Vec<(u32, f64)> = Vec::with_capacity(3 * most);
     for (corner, weight) in corners.into_iter().zip(weights.to_array()) {
         for &(joint, influence) in corner {

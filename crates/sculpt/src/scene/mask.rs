@@ -26,7 +26,8 @@ pub(super) fn masked(
     strokes.iter().enumerate().map(masked).collect()
 }
 
-fn mask(mask: &Mask, target: &TriMesh) -> Result<field::Mask, RecipeError> {
+/// The mask that plain data describe for `target`.
+pub(crate) fn mask(mask: &Mask, target: &TriMesh) -> Result<field::Mask, RecipeError> {
     let wrong =
         |key: String| move |error: field::MaskError| RecipeError::new(&key, RecipeProblem::Other(error.to_string()));
     let pins = mask.pins.iter().enumerate().map(|(index, pin)| {

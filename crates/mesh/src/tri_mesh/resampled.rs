@@ -1,0 +1,138 @@
+//! Attributes on a surface that was cut anew, interpolated once from the original mesh, corner by corner.
+
+use glam::{DVec2, DVec3, DVec4};
+
+use super::subdivided::{interpolate, interpolate_influences, interpolate_normal};
+use crate::{CornerAttributes, TriMesh, VertexAttributes};
+
+/// Where a vertex or a corner comes from: a point of a triangle of another mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Origin {
+    /// The triangle.
+    pub triangle: u32,
+    /// Barycentric coordinates in it.
+    pub weights: DVec3,
+}
+
+/// A surface whose vertices and corners come from points of a mesh, but whose triangles may lie across its triangles.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Resampling {
+    /// One position a vertex.
+    pub positions: Vec<DVec3>,
+    /// Vertex indices.
+    pub triangles: Vec<[u32; 3]>,
+    /// By triangle the one of the mesh whose material it has.
+    pub parents: Vec<u32>,
+    /// By triangle where its corners take their attributes from.
+    pub corners: Vec<[Origin; 3]>,
+    /// By vertex where it takes its attributes from.
+    pub vertices: Vec<VertexOrigin>,
+}
+
+/// Where a vertex takes its attributes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum VertexOrigin {
+    /// A point of a triangle.
+    Point(Origin),
+    /// A vertex, which may belong to no triangle.
+    Vertex(u32),
+}
+
+impl TriMesh {
+    /// The surface `resampling` with the attributes of this mesh. Values at corners of the mesh keep their bits; shading normals
+    /// and skin weights in between are made unit again, and no vertex gets more influences than the one of this mesh that has
+    /// most.
+    ///
+    /// # Panics
+    /// If the resampling names a triangle that this mesh does not have, or its lists have not the lengths they should.
+    pub fn resampled(&self, resampling: &Resampling) -> TriMesh {
+        let each = |corner: &dyn Fn(&Origin) -> DVec4| -> Vec<[DVec4; 3]> {
+            resampling.corners.iter().map(|corners| [0, 1, 2].map(|side| corner(&corners[side]))).collect()
+        };
+        let uvs = self.corner.uvs.iter().map(|set| {
+            let at = |origin: &Origin| interpolate(&set[origin.triangle as usize], origin.weights);
+            resampling
+                .corners
+                .iter()
+                .map(|corners| [0, 1, 2].map(|side| at(&corners[side])))
+                .collect::<Vec<[DVec2; 3]>>()
+        });
+        let normals = |corners: &[Origin; 3]| {
+            corners.map(|origin| interpolate_normal(&self.corner.normals[origin.triangle as usize], origin.weights))
+        };
+        TriMesh {
+            positions: resampling.positions.clone(),
+            triangles: resampling.triangles.clone(),
+            corner: CornerAttributes {
+                uvs: uvs.collect(),
+                normals: match self.corner.normals.is_empty() {
+                    true => Vec::new(),
+                    false => resampling.corners.iter().map(normals).collect(),
+                },
+                colors: match self.corner.colors.is_empty() {
+                    true => Vec::new(),
+                    false => each(&|origin| interpolate(&self.corner.colors[origin.triangle as usize], origin.weights)),
+                },
+            },
+            vertex: self.resampled_vertices(resampling),
+            triangle_materials: match self.triangle_materials.is_empty() {
+                true => Vec::new(),
+                false => resampling.parents.iter().map(|&parent| self.triangle_materials[parent as usize]).collect(),
+            },
+            materials: self.materials.clone(),
+            assets: self.assets.clone(),
+        }
+    }
+
+    /// The point of this mesh that `origin` names.
+    ///
+    /// # Panics
+    /// If the mesh has no such triangle.
+    pub fn point_at(&self, origin: &Origin) -> DVec3 {
+        interpolate(&self.corners(origin.triangle as usize), origin.weights)
+    }
+
+    /// The texture coordinates of one set at `origin`.
+    ///
+    /// # Panics
+    /// If the mesh has no such triangle or set.
+    pub fn uv_at(&self, set: usize, origin: &Origin) -> DVec2 {
+        interpolate(&self.corner.uvs[set][origin.triangle as usize], origin.weights)
+    }
+
+    /// The color at `origin`: that of the corners, else that of the vertices; none where the mesh has neither.
+    ///
+    /// # Panics
+    /// If the mesh has no such triangle.
+    pub fn color_at(&self, origin: &Origin) -> Option<DVec4> {
+        let triangle = origin.triangle as usize;
+        if !self.corner.colors.is_empty() {
+            return Some(interpolate(&self.corner.colors[triangle], origin.weights));
+        }
+        let colors = &self.vertex.colors;
+        let at = || interpolate(&self.triangles[triangle].map(|vertex| colors[vertex as usize]), origin.weights);
+        (!colors.is_empty()).then(at)
+    }
+
+    fn resampled_vertices(&self, resampling: &Resampling) -> VertexAttributes {
+        let VertexAttributes { colors, skin } = &self.vertex;
+        let most = skin.iter().map(Vec::len).max().unwrap_or(0);
+        let corners = |origin: &Origin| self.triangles[origin.triangle as usize].map(|vertex| vertex as usize);
+        let color = |origin: &VertexOrigin| match origin {
+            VertexOrigin::Vertex(vertex) => colors[*vertex as usize],
+            VertexOrigin::Point(origin) => interpolate(&corners(origin).map(|vertex| colors[vertex]), origin.weights),
+        };
+        let influences = |origin: &VertexOrigin| match origin {
+            VertexOrigin::Vertex(vertex) => skin[*vertex as usize].clone(),
+            VertexOrigin::Point(origin) => match origin.weights.to_array().iter().position(|&weight| weight == 1.0) {
+                Some(kept) => skin[corners(origin)[kept]].clone(),
+                None => interpolate_influences(corners(origin).map(|v| skin[v].as_slice()), origin.weights, most),
+            },
+        };
+        let origins = &resampling.vertices;
+        VertexAttributes {
+            colors: if colors.is_empty() { Vec::new() } else { origins.iter().map(color).collect() },
+            skin: if skin.is_empty() { Vec::new() } else { origins.iter().map(influences).collect() },
+        }
+    }
+}

@@ -1,0 +1,387 @@
+//! The sculpting session: a mesh that a host deforms stroke by stroke, at the pace of a frame.
+//!
+//! Terms used throughout:
+//!
+//! - A *stroke* goes from [`begin_stroke`](Session::begin_stroke) to [`end_stroke`](Session::end_stroke). Each
+//!   [`move_to`](Session::move_to) in between carries the tool along a screw from the last pose to the next, so that a fast stroke
+//!   leaves no separate dabs. All work is in proportion to what the tool touches, whatever the size of the mesh.
+//! - A *vertex* is a point of the surface. Vertices of the mesh as opened keep their numbers and go exactly where the flow takes
+//!   them; inserted ones follow in order, and numbers never change their meaning.
+//! - A *render vertex* is a vertex as the triangles on one side of a seam see it: what [buffers](Session::buffers) hold.
+//! - The *origin* of a render vertex is the point of the mesh as opened that it takes its attributes from.
+//! - The *log* is a [recipe](crate::Recipe) of all strokes, which can be [replayed](crate::replay) on any mesh or point set.
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use glam::DVec3;
+//! use isochore_field::Pose;
+//! use isochore_mesh::{Silent, primitives::icosphere};
+//! use isochore_sculpt::{Meshes, recipe, session::{Session, SessionOptions, SessionTool, StrokeOptions}};
+//!
+//! let mut session = Session::open(icosphere(1.0, 4), SessionOptions::default())?;
+//! let shape = recipe::ToolShape::Sphere(recipe::Sphere { radius: 0.2 });
+//! let brush = recipe::Tool { shape, support: 0.3, profile: recipe::Profile::Quintic, free_form: 0.0 };
+//! let brush = Arc::new(SessionTool::new("brush", brush, &Meshes::new(), &Silent)?);
+//!
+//! session.begin_stroke(&brush, StrokeOptions::default())?;
+//! for step in 0..5 {
+//!     session.move_to(&Pose::at(DVec3::new(0.0, 0.0, 1.0 + 0.05 * f64::from(step))), f64::from(step) / 60.0)?;
+//!     let changes = session.take_changes();
+//!     let buffers = session.buffers();
+//!     assert!(changes.positions.iter().all(|range| range.end as usize <= buffers.positions.len()));
+//! }
+//! let receipt = session.end_stroke()?;
+//! // The bare method, without any lock.
+//! assert!(receipt.volume.unwrap().bare().abs() < 1e-3 * session.volume().unwrap());
+//! assert!(session.undo()?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod buffers;
+mod editing;
+mod error;
+mod export;
+mod history;
+mod log;
+mod marks;
+mod opening;
+mod options;
+mod origin;
+mod query;
+mod receipt;
+mod refinement;
+mod selection;
+mod shading;
+mod stopwatch;
+mod stroke;
+mod surface;
+mod tool;
+mod volume;
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use isochore_field as field;
+use isochore_mesh::{Aabb, ClosedMesh, NONE, TriMesh};
+
+pub use buffers::{Changes, DirtyRange, RenderBuffers};
+pub use error::{OpenError, SessionError};
+pub use export::Exported;
+pub use log::SessionReplayError;
+pub use options::{InteractiveRefinement, NormalWeights, SessionOptions, StrokeOptions};
+pub use query::{Arrow, Hit};
+pub use receipt::{History, MoveReceipt, MoveSeconds, StrokeReceipt, StrokeVolume};
+pub use tool::SessionTool;
+pub use volume::MovedVolume;
+
+use crate::{
+    recipe::{Key, Mask, Recipe, RecipeError},
+    scene,
+};
+use history::{Step, Steps};
+use log::LoggedStroke;
+use refinement::Pass;
+use stopwatch::Stopwatch;
+use stroke::{ActiveStroke, Segment};
+use surface::Surface;
+
+/// A mesh under the hands of a host.
+///
+/// It is `Send`: a binding may keep it behind a handle and call it from any one thread at a time. Results have the same bits for any
+/// number of threads, and for any history of undone and canceled strokes.
+#[derive(Debug, Clone)]
+pub struct Session {
+    options: SessionOptions,
+    surface: Surface,
+    /// Vertices without triangles, in ascending order.
+    loose: Vec<u32>,
+    opened_bounds: Aabb,
+    /// None where the surface is open.
+    opened_volume: Option<f64>,
+    mask: Option<Arc<field::Mask>>,
+    /// By vertex of the mesh as opened, whether its edges stay; empty where all may be edited.
+    frozen: Vec<bool>,
+    stroke: Option<ActiveStroke>,
+    steps: Steps,
+}
+
+impl Session {
+    /// Opens a session on `mesh`, which must be an oriented surface without branches, closed or open.
+    ///
+    /// Takes time and memory in proportion to the mesh, once: about 400 bytes a triangle.
+    ///
+    /// # Errors
+    /// [`OpenError`], naming the edge, vertex or option that is wrong.
+    pub fn open(mesh: TriMesh, options: SessionOptions) -> Result<Self, OpenError> {
+        mesh.check_valid()?;
+        check(&options)?;
+        let mask = match options.mask == Mask::default() {
+            true => None,
+            false => Some(Arc::new(scene::mask::mask(&options.mask, &mesh)?)),
+        };
+        let opened_bounds = mesh.bounds();
+        let opened_volume = ClosedMesh::new(&mesh).ok().map(|closed| closed.volume());
+        let surface = Surface::open(mesh, options.normals)?;
+        let loose =
+            (0..surface.topology.vertex_count() as u32).filter(|&vertex| surface.topology.leaving(vertex) == NONE);
+        let loose = loose.collect();
+        Ok(Self {
+            options,
+            surface,
+            loose,
+            opened_bounds,
+            opened_volume,
+            mask,
+            frozen: Vec::new(),
+            stroke: None,
+            steps: Steps::default(),
+        })
+    }
+
+    /// The mesh as it was opened.
+    pub fn opened(&self) -> &TriMesh {
+        &self.surface.opened
+    }
+
+    /// Begins a stroke. Nothing moves before the second pose.
+    ///
+    /// # Errors
+    /// [`SessionError::StrokeUnderWay`], [`SessionError::Refinement`].
+    pub fn begin_stroke(&mut self, tool: &Arc<SessionTool>, options: StrokeOptions) -> Result<(), SessionError> {
+        if self.stroke.is_some() {
+            return Err(SessionError::StrokeUnderWay);
+        }
+        options.refine.as_ref().map_or(Ok(()), InteractiveRefinement::check)?;
+        let alive = self.surface.begin();
+        self.stroke = Some(ActiveStroke::new(Arc::clone(tool), options.refine, alive));
+        Ok(())
+    }
+
+    /// Moves the tool to `pose` (world from tool), and with it what it touches.
+    ///
+    /// Poses are joined by constant body twists: screws of less than half a turn. `time`, in seconds of the host, may not run
+    /// backward; it is told in the receipt, and what is carried where does not depend on it.
+    ///
+    /// # Errors
+    /// [`SessionError`]; the tool is then still at the last pose, and the stroke goes on from there.
+    pub fn move_to(&mut self, pose: &field::Pose, time: f64) -> Result<MoveReceipt, SessionError> {
+        if !(pose.translation.is_finite() && pose.rotation.is_finite()) {
+            return Err(field::StrokeError::NotFinite("the poses of the path").into());
+        }
+        // What the log will say, so that replaying it gives the same bits.
+        let key = log::key(pose);
+        let pose = scene::pose(&key);
+        self.move_to_key(key, pose, time)
+    }
+
+    fn move_to_key(&mut self, key: Key, pose: field::Pose, time: f64) -> Result<MoveReceipt, SessionError> {
+        let stroke = self.stroke.as_ref().ok_or(SessionError::NoStroke)?;
+        let last = stroke.times.last().copied().unwrap_or(f64::NEG_INFINITY);
+        if !(time.is_finite() && time >= last) {
+            return Err(SessionError::Time { time, last });
+        }
+        let mut done = MoveReceipt::default();
+        if let Some(last) = stroke.pose {
+            let segment = self.segment(&stroke.tool, [last, pose])?;
+            self.carry(segment, &mut done)?;
+        }
+        if let Some(stroke) = &mut self.stroke {
+            if stroke.pose.is_some() {
+                stroke.note_move(&done);
+            }
+            stroke.keys.push(key);
+            stroke.times.push(time);
+            stroke.pose = Some(pose);
+        }
+        Ok(done)
+    }
+
+    /// The way of a tool between two poses.
+    fn segment(&self, tool: &SessionTool, poses: [field::Pose; 2]) -> Result<Segment, SessionError> {
+        let way = field::Move::new(Arc::clone(tool.tool()), poses.to_vec(), self.options.step)?;
+        let mut stroke = field::Stroke::Move(way);
+        if let Some(mask) = &self.mask {
+            stroke = stroke.masked(mask, self.opened_bounds, self.options.step)?;
+        }
+        Ok(Segment { reach: stroke.reach(), stroke })
+    }
+
+    /// Carries what the tool touches along one segment, and refines there.
+    fn carry(&mut self, segment: Segment, done: &mut MoveReceipt) -> Result<(), SessionError> {
+        let Some(stroke) = &mut self.stroke else { return Err(SessionError::NoStroke) };
+        let surface = &mut self.surface;
+        let mut watch = Stopwatch::start();
+        let refine = stroke.refine.clone();
+        let mut edited = Vec::new();
+
+        let mut near = surface.triangles_in(segment.reach);
+        done.seconds.select += watch.lap();
+        if let Some(options) = &refine {
+            let mut pass = Pass { surface, stroke, frozen: &self.frozen, edited: &mut edited, done };
+            pass.resolve(&near, options, &segment);
+            near.extend(&edited);
+        }
+        done.seconds.refine += watch.lap();
+
+        let mut vertices = surface.vertices_in(&near, segment.reach);
+        vertices.extend(self.loose.iter().filter(|&&vertex| segment.reach.distance(surface.position(vertex)) == 0.0));
+        done.seconds.select += watch.lap();
+
+        let mut carried: Vec<DVec3> = vertices.iter().map(|&vertex| surface.position(vertex)).collect();
+        done.evaluations += segment.stroke.carry(&mut carried);
+        let overflow = vertices.iter().zip(&carried).find(|(_, position)| !position.is_finite());
+        let overflow = overflow.map(|(&vertex, _)| vertex);
+        let mut moved = Vec::with_capacity(vertices.len());
+        if overflow.is_none() {
+            for (&vertex, &position) in vertices.iter().zip(&carried) {
+                let bits = |point: DVec3| point.to_array().map(f64::to_bits);
+                if bits(surface.position(vertex)) != bits(position) {
+                    surface.positions.set(vertex, position);
+                    moved.push(vertex);
+                }
+            }
+            stroke.way.push(segment);
+        }
+        done.moved_vertices = moved.len();
+        done.seconds.flow += watch.lap();
+
+        let mut changed = surface.triangles_around(&moved);
+        stroke.note_moved(&changed, surface.corners.items().len());
+        if let Some(options) = refine.as_ref().filter(|_| overflow.is_none()) {
+            let mut pass = Pass { surface, stroke, frozen: &self.frozen, edited: &mut edited, done };
+            pass.improve(&changed, options);
+        }
+        surface.include(&mut changed, &edited);
+        done.seconds.refine += watch.lap();
+
+        surface.update_tree(&changed);
+        done.seconds.index += watch.lap();
+        let shaded = surface.vertices_of(&changed);
+        surface.write_buffers(&moved, &shaded);
+        done.seconds.buffers += watch.lap();
+        overflow.map_or(Ok(()), |vertex| Err(SessionError::Overflow { vertex }))
+    }
+
+    /// Ends the stroke, which can then be undone and is in the log. A stroke of fewer than two poses did nothing and leaves nothing.
+    ///
+    /// No volume lock acts: the change told is that of the bare method.
+    ///
+    /// # Errors
+    /// [`SessionError::NoStroke`].
+    pub fn end_stroke(&mut self) -> Result<StrokeReceipt, SessionError> {
+        let stroke = self.stroke.take().ok_or(SessionError::NoStroke)?;
+        let mut receipt = stroke.receipt;
+        if let [first, .., last] = stroke.times[..] {
+            receipt.duration = last - first;
+        }
+        receipt.touched_vertices = self.surface.positions.edited().count();
+        receipt.volume = self.opened_volume.map(|_| stroke.volume(&self.surface));
+        let mut delta = self.surface.finish(stroke.alive);
+        if stroke.keys.len() < 2 {
+            self.surface.swap(&mut delta);
+            return Ok(receipt);
+        }
+        let volume_change = receipt.volume.map(|volume| volume.total());
+        let stroke = LoggedStroke { tool: stroke.tool, keys: stroke.keys, volume_change };
+        let step = Step { stroke, delta };
+        receipt.undo_bytes = step.bytes();
+        receipt.forgotten_strokes = self.steps.push(step, self.options.undo_bytes);
+        Ok(receipt)
+    }
+
+    /// Takes back the stroke under way, to the bit.
+    ///
+    /// # Errors
+    /// [`SessionError::NoStroke`].
+    pub fn cancel_stroke(&mut self) -> Result<(), SessionError> {
+        let stroke = self.stroke.take().ok_or(SessionError::NoStroke)?;
+        let mut delta = self.surface.finish(stroke.alive);
+        self.surface.swap(&mut delta);
+        Ok(())
+    }
+
+    /// Takes back the last stroke, to the bit. False where there is none, or none that is remembered.
+    ///
+    /// # Errors
+    /// [`SessionError::StrokeUnderWay`].
+    pub fn undo(&mut self) -> Result<bool, SessionError> {
+        if self.stroke.is_some() {
+            return Err(SessionError::StrokeUnderWay);
+        }
+        let Some(mut step) = self.steps.done.pop_back() else { return Ok(false) };
+        self.surface.swap(&mut step.delta);
+        self.steps.undone.push(step);
+        Ok(true)
+    }
+
+    /// Makes the stroke again that was undone last, to the bit. False where there is none, or a new stroke took its place.
+    ///
+    /// # Errors
+    /// [`SessionError::StrokeUnderWay`].
+    pub fn redo(&mut self) -> Result<bool, SessionError> {
+        if self.stroke.is_some() {
+            return Err(SessionError::StrokeUnderWay);
+        }
+        let Some(mut step) = self.steps.undone.pop() else { return Ok(false) };
+        self.surface.swap(&mut step.delta);
+        self.steps.done.push_back(step);
+        Ok(true)
+    }
+
+    /// What can be undone and redone.
+    pub fn history(&self) -> History {
+        self.steps.history()
+    }
+
+    /// Whether a stroke has begun and not ended.
+    pub fn is_stroke_under_way(&self) -> bool {
+        self.stroke.is_some()
+    }
+
+    /// Keeps the edges at some vertices of the mesh as opened from being split, collapsed or flipped from now on, and frees all
+    /// others. Numbers that are no such vertices are ignored. What inserted vertices hold already stays.
+    pub fn freeze_edges(&mut self, vertices: &[u32]) {
+        self.frozen.clear();
+        if !vertices.is_empty() {
+            self.frozen.resize(self.surface.opened.positions.len(), false);
+            for &vertex in vertices {
+                if let Some(frozen) = self.frozen.get_mut(vertex as usize) {
+                    *frozen = true;
+                }
+            }
+        }
+    }
+
+    /// What a renderer draws, in place. Borrowed as long as the session is not changed; see [`RenderBuffers::generation`] for hosts
+    /// that keep addresses.
+    pub fn buffers(&self) -> RenderBuffers<'_> {
+        self.surface.buffers()
+    }
+
+    /// What has changed in the buffers since the last call: at first, everything. Ask after each move, undo and redo.
+    pub fn take_changes(&mut self) -> Changes {
+        self.surface.take_changes()
+    }
+
+    fn logged(&self) -> impl Iterator<Item = &LoggedStroke> {
+        self.steps.forgotten.iter().chain(self.steps.done.iter().map(|step| &step.stroke))
+    }
+}
+
+/// Checks what the log would not read back.
+fn check(options: &SessionOptions) -> Result<(), RecipeError> {
+    let recipe = Recipe {
+        recipe: 1,
+        target: options.target.clone(),
+        tools: Default::default(),
+        strokes: Vec::new(),
+        integrate: crate::recipe::Integrate { step: options.step },
+        refine: Default::default(),
+        promise: Default::default(),
+        volume: Default::default(),
+        mask: options.mask.clone(),
+        output: Default::default(),
+    };
+    recipe.validate()
+}

@@ -1,0 +1,57 @@
+//! Undo and redo: the strokes done, with the way back, and the strokes undone, with the way forth.
+
+use std::collections::VecDeque;
+
+use super::{History, log::LoggedStroke, surface::SurfaceDelta};
+
+/// A stroke and the way to its other end.
+#[derive(Debug, Clone)]
+pub(super) struct Step {
+    pub(super) stroke: LoggedStroke,
+    pub(super) delta: SurfaceDelta,
+}
+
+#[derive(Debug, Clone, Default)]
+pub(super) struct Steps {
+    /// Strokes that can no longer be undone.
+    pub(super) forgotten: Vec<LoggedStroke>,
+    pub(super) done: VecDeque<Step>,
+    /// The next to be redone is the last.
+    pub(super) undone: Vec<Step>,
+}
+
+impl Steps {
+    /// Takes in a new stroke, forgets what was undone, and the oldest as far as `most` bytes demand. Returns how many.
+    pub(super) fn push(&mut self, step: Step, most: usize) -> usize {
+        self.undone.clear();
+        self.done.push_back(step);
+        let mut bytes = self.bytes();
+        let mut dropped = 0;
+        while bytes > most && self.done.len() > 1 {
+            let Some(oldest) = self.done.pop_front() else { break };
+            bytes -= oldest.bytes();
+            self.forgotten.push(oldest.stroke);
+            dropped += 1;
+        }
+        dropped
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.done.iter().chain(&self.undone).map(Step::bytes).sum()
+    }
+
+    pub(super) fn history(&self) -> History {
+        History {
+            undoable: self.done.len(),
+            redoable: self.undone.len(),
+            forgotten: self.forgotten.len(),
+            bytes: self.bytes(),
+        }
+    }
+}
+
+impl Step {
+    pub(super) fn bytes(&self) -> usize {
+        self.delta.bytes() + self.stroke.keys.capacity() * size_of::<crate::recipe::Key>()
+    }
+}

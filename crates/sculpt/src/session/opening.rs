@@ -1,0 +1,109 @@
+//! From a mesh with attributes on corners to a surface with render vertices.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use isochore_mesh::{EditMesh, NONE, Origin, SurfaceTree, TriMesh, next_half_edge};
+
+use super::{
+    NormalWeights, OpenError,
+    surface::{Patch, RenderVertex, Surface},
+};
+
+impl Surface {
+    /// The surface of `mesh`, as opened.
+    pub(super) fn open(mesh: TriMesh, weights: NormalWeights) -> Result<Self, OpenError> {
+        mesh.check_valid()?;
+        check_attributes(&mesh)?;
+        let topology = EditMesh::new(&mesh.triangles, mesh.positions.len())?;
+        let tree = SurfaceTree::new(&mesh.positions, &mesh.triangles)?;
+        let (corners, render) = render_vertices(&mesh);
+        let patches = (0..mesh.triangles.len() as u32)
+            .map(|parent| Patch { parent, hard: hard_edges(&mesh, &topology, parent) })
+            .collect();
+        Ok(Self::new(Arc::new(mesh), topology, corners, patches, render, tree, weights))
+    }
+}
+
+fn check_attributes(mesh: &TriMesh) -> Result<(), OpenError> {
+    let (triangles, vertices) = (mesh.triangles.len(), mesh.positions.len());
+    let uvs = mesh.corner.uvs.iter().map(|set| ("texture coordinates", set.len(), triangles, false));
+    let others = [
+        ("corner normals", mesh.corner.normals.len(), triangles, true),
+        ("corner colors", mesh.corner.colors.len(), triangles, true),
+        ("vertex colors", mesh.vertex.colors.len(), vertices, true),
+        ("skin influences", mesh.vertex.skin.len(), vertices, true),
+        ("triangle materials", mesh.triangle_materials.len(), triangles, true),
+    ];
+    for (attribute, found, expected, may_be_absent) in uvs.chain(others) {
+        if found != expected && !(may_be_absent && found == 0) {
+            return Err(OpenError::AttributeCount { attribute, found, expected });
+        }
+    }
+    Ok(())
+}
+
+/// Whether two corners of the mesh, by triangle and side, carry the same attributes to the bit.
+pub(super) fn is_same_corner(mesh: &TriMesh, [one, other]: [(u32, usize); 2]) -> bool {
+    let [(a, i), (b, j)] = [one, other].map(|(triangle, side)| (triangle as usize, side));
+    let corner = &mesh.corner;
+    let bits3 = |normal: DVec3| normal.to_array().map(f64::to_bits);
+    corner.uvs.iter().all(|set| set[a][i].to_array().map(f64::to_bits) == set[b][j].to_array().map(f64::to_bits))
+        && (corner.normals.is_empty() || bits3(corner.normals[a][i]) == bits3(corner.normals[b][j]))
+        && (corner.colors.is_empty()
+            || corner.colors[a][i].to_array().map(f64::to_bits) == corner.colors[b][j].to_array().map(f64::to_bits))
+}
+
+/// One render vertex for each different corner at a vertex: the first of each vertex has the vertex' own number, the others follow.
+fn render_vertices(mesh: &TriMesh) -> (Vec<[u32; 3]>, Vec<RenderVertex>) {
+    let mut render: Vec<RenderVertex> =
+        (0..mesh.positions.len() as u32).map(|vertex| RenderVertex { vertex, origin: None }).collect();
+    // By render vertex the next one of the same vertex.
+    let mut following = vec![NONE; render.len()];
+    let mut corner = |triangle: u32, side: usize| {
+        let vertex = mesh.triangles[triangle as usize][side];
+        let weights = [DVec3::X, DVec3::Y, DVec3::Z][side];
+        let origin = Origin { triangle, weights };
+        let mut index = vertex;
+        loop {
+            match render[index as usize].origin {
+                None => {
+                    render[index as usize].origin = Some(origin);
+                    return index;
+                }
+                Some(known)
+                    if is_same_corner(mesh, [(known.triangle, known.weights.max_position()), (triangle, side)]) =>
+                {
+                    return index;
+                }
+                Some(_) if following[index as usize] == NONE => {
+                    let added = render.len() as u32;
+                    following[index as usize] = added;
+                    following.push(NONE);
+                    render.push(RenderVertex { vertex, origin: Some(origin) });
+                    return added;
+                }
+                Some(_) => index = following[index as usize],
+            }
+        }
+    };
+    let corners =
+        (0..mesh.triangles.len() as u32).map(|triangle| [0, 1, 2].map(|side| corner(triangle, side))).collect();
+    (corners, render)
+}
+
+/// The edges of a triangle across which the shading normals of the mesh break, as bits.
+fn hard_edges(mesh: &TriMesh, topology: &EditMesh, triangle: u32) -> u8 {
+    let normals = &mesh.corner.normals;
+    if normals.is_empty() {
+        return 0;
+    }
+    let normal = |half_edge: u32| normals[half_edge as usize / 3][half_edge as usize % 3].to_array().map(f64::to_bits);
+    let is_hard = |side: &u32| {
+        let half_edge = 3 * triangle + side;
+        let twin = topology.twin(half_edge);
+        let ahead = |half_edge: u32| normal(next_half_edge(half_edge));
+        twin != NONE && (normal(half_edge) != ahead(twin) || ahead(half_edge) != normal(twin))
+    };
+    (0..3).filter(is_hard).fold(0, |bits, side| bits | 1 << side)
+}

@@ -1,0 +1,52 @@
+use super::{InteractiveRefinement, Limits, MayTouch, Pass, survey};
+
+/// Rounds of splitting in one pass: each halves what is too long, so this many resolve edges a thousand times too long. What is
+/// left then is split by the next move.
+const MAX_ROUNDS: usize = 10;
+
+impl Pass<'_> {
+    /// Splits edges that are too long, longest first, and goes on with what that leaves.
+    ///
+    /// A new vertex lies in the middle of the edge on the surface as it stood when the stroke began, and is carried from there
+    /// through all that the stroke did: it is where the flow takes that point, not in the middle of the ends.
+    pub(super) fn split(
+        &mut self,
+        mut long: Vec<(f64, [u32; 2])>,
+        options: &InteractiveRefinement,
+        limits: &Limits,
+        may_touch: Option<MayTouch<'_>>,
+    ) {
+        for _ in 0..MAX_ROUNDS {
+            long.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            long.dedup_by_key(|(_, edge)| *edge);
+            long.retain(|&(_, edge)| self.editable(edge, options).is_some());
+            let room = limits.max_triangles.saturating_sub(self.surface.topology.alive()) / 2;
+            self.done.is_limited |= long.len() > room;
+            long.truncate(room);
+            if long.is_empty() {
+                return;
+            }
+            let base = |&(_, ends): &(f64, [u32; 2])| {
+                let [a, b] = ends.map(|vertex| self.stroke.base(self.surface, vertex));
+                0.5 * (a + b)
+            };
+            let bases: Vec<_> = long.iter().map(base).collect();
+            let mut images = bases.clone();
+            self.done.evaluations += self.stroke.carry(&mut images);
+
+            let known = self.edited.len();
+            for ((&(_, ends), base), image) in long.iter().zip(bases).zip(images) {
+                // Other splits of this round leave the edge as it is. A point that is carried out of the range of numbers is none.
+                let Some(half_edge) = self.editable(ends, options).filter(|_| image.is_finite()) else { continue };
+                let (split, gained) = self.surface.split(half_edge, image);
+                self.stroke.inserted.push(base);
+                self.stroke.splits.add(gained);
+                self.edited.extend(split.near.into_iter().chain(split.far.into_iter().flatten()));
+                self.done.inserted_vertices += 1;
+            }
+            let edited = self.edited[known..].to_vec();
+            let again = Limits { shortest2: 0.0, flip: false, ..*limits };
+            long = survey(self.surface, &edited, &again, may_touch).long;
+        }
+    }
+}

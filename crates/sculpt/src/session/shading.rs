@@ -1,0 +1,86 @@
+//! Vertex normals, made anew only where the surface has changed.
+
+use glam::DVec3;
+use isochore_mesh::{NONE, previous_half_edge};
+use rayon::prelude::*;
+
+use super::{NormalWeights, surface::Surface};
+
+/// Vertices that one task makes normals for. Larger leaves threads idle; smaller spends time on handing out tasks.
+const CHUNK: usize = 1024;
+
+impl Surface {
+    /// Makes the normals anew of all render vertices of `vertices`.
+    pub(super) fn write_normals(&mut self, vertices: &[u32]) {
+        let normals: Vec<Vec<(u32, [f32; 3])>> = vertices
+            .par_chunks(CHUNK)
+            .map(|chunk| {
+                let mut normals = Vec::with_capacity(chunk.len());
+                let mut fan = Vec::new();
+                for &vertex in chunk {
+                    self.vertex_normals(vertex, &mut fan, &mut normals);
+                }
+                normals
+            })
+            .collect();
+        for (render, normal) in normals.into_iter().flatten() {
+            self.set_normal(render, normal);
+        }
+    }
+
+    /// Appends the normals of the render vertices of `vertex`. Triangles between two hard edges share one; across a mere seam of
+    /// attributes the shading is smooth.
+    fn vertex_normals(&self, vertex: u32, fan: &mut Vec<u32>, normals: &mut Vec<(u32, [f32; 3])>) {
+        let first = self.topology.leaving(vertex);
+        if first == NONE {
+            return;
+        }
+        fan.clear();
+        fan.extend(self.topology.fan(vertex));
+        // Turned so that a hard edge, if there is one, comes first. Where the surface ends, the fan begins at the end.
+        if !self.topology.is_boundary(vertex) {
+            let hard = fan.iter().position(|&half_edge| self.is_hard(half_edge));
+            fan.rotate_left(hard.unwrap_or(0));
+        }
+        let mut start = 0;
+        while start < fan.len() {
+            let length = fan[start + 1..].iter().take_while(|&&half_edge| !self.is_hard(half_edge)).count() + 1;
+            let sector = &fan[start..start + length];
+            let sum = sector.iter().map(|&half_edge| self.weighted_normal(half_edge)).sum::<DVec3>();
+            let normal = sum.normalize_or_zero().as_vec3().to_array();
+            let mut last = NONE;
+            for &half_edge in sector {
+                let render = self.corners.items()[half_edge as usize / 3][half_edge as usize % 3];
+                if render != last {
+                    normals.push((render, normal));
+                }
+                last = render;
+            }
+            start += length;
+        }
+    }
+
+    /// Whether shading breaks across the edge of a half-edge.
+    pub(super) fn is_hard(&self, half_edge: u32) -> bool {
+        self.patches.items()[half_edge as usize / 3].hard >> (half_edge % 3) & 1 == 1
+    }
+
+    /// The normal of a triangle, weighted for the vertex that a half-edge of it starts from.
+    #[inline]
+    fn weighted_normal(&self, half_edge: u32) -> DVec3 {
+        let triangle = &self.topology.triangles()[half_edge as usize / 3];
+        let positions = self.positions.items();
+        let [a, b, c] = triangle.vertices.map(|vertex| positions[vertex as usize]);
+        let normal = (b - a).cross(c - a);
+        match self.weights {
+            NormalWeights::Area => normal,
+            NormalWeights::Angle => {
+                let at = |half_edge: u32| [a, b, c][half_edge as usize % 3];
+                let here = at(half_edge);
+                let behind = at(previous_half_edge(half_edge)) - here;
+                let ahead = at(isochore_mesh::next_half_edge(half_edge)) - here;
+                normal.normalize_or_zero() * libm::atan2(ahead.cross(behind).length(), ahead.dot(behind))
+            }
+        }
+    }
+}

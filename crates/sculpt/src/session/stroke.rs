@@ -1,0 +1,119 @@
+//! The stroke under way: what it was made of, and the way of any point through it so far.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use isochore_field as field;
+use isochore_mesh::{Aabb, CompensatedSum};
+use rayon::prelude::*;
+
+use super::{InteractiveRefinement, MoveReceipt, SessionTool, StrokeReceipt, marks::Marks, surface::Surface};
+use crate::recipe::Key;
+
+/// Points that one task carries through all that a stroke did so far.
+const CHUNK: usize = 128;
+
+/// A stroke that has begun and not ended.
+#[derive(Debug, Clone)]
+pub(super) struct ActiveStroke {
+    pub(super) tool: Arc<SessionTool>,
+    pub(super) refine: Option<InteractiveRefinement>,
+    /// Poses so far, as the log writes them, and the last as it is worked with.
+    pub(super) keys: Vec<Key>,
+    pub(super) times: Vec<f64>,
+    pub(super) pose: Option<field::Pose>,
+    pub(super) way: Vec<Segment>,
+    /// Triangles there when it began.
+    pub(super) alive: usize,
+    /// Where inserted vertices lie on the surface as it stood when the stroke began, in order.
+    pub(super) inserted: Vec<DVec3>,
+    /// Triangles with a vertex that moved.
+    pub(super) moved: Vec<u32>,
+    pub(super) moved_marks: Marks,
+    pub(super) splits: CompensatedSum,
+    pub(super) remeshing: CompensatedSum,
+    /// Size of all that was summed up, for the bound on rounding.
+    pub(super) remeshed: f64,
+    pub(super) receipt: StrokeReceipt,
+}
+
+/// The way between two poses.
+#[derive(Debug, Clone)]
+pub(super) struct Segment {
+    pub(super) stroke: field::Stroke,
+    pub(super) reach: Aabb,
+}
+
+impl ActiveStroke {
+    pub(super) fn new(tool: Arc<SessionTool>, refine: Option<InteractiveRefinement>, alive: usize) -> Self {
+        let mut moved_marks = Marks::default();
+        moved_marks.clear(0);
+        Self {
+            tool,
+            refine,
+            keys: Vec::new(),
+            times: Vec::new(),
+            pose: None,
+            way: Vec::new(),
+            alive,
+            inserted: Vec::new(),
+            moved: Vec::new(),
+            moved_marks,
+            splits: CompensatedSum::default(),
+            remeshing: CompensatedSum::default(),
+            remeshed: 0.0,
+            receipt: StrokeReceipt::default(),
+        }
+    }
+
+    /// Where a vertex lies on the surface as it stood when the stroke began.
+    pub(super) fn base(&self, surface: &Surface, vertex: u32) -> DVec3 {
+        match surface.positions.original(vertex) {
+            Some(position) => position,
+            None => self.inserted[vertex as usize - surface.positions.original_len()],
+        }
+    }
+
+    /// Carries points of that surface through all that the stroke did so far. Returns how many times the fields were evaluated.
+    pub(super) fn carry(&self, points: &mut [DVec3]) -> u64 {
+        let carry = |chunk: &mut [DVec3]| {
+            let (mut within, mut carried) = (Vec::new(), Vec::new());
+            let mut evaluations = 0;
+            for segment in &self.way {
+                within.clear();
+                within.extend((0..chunk.len()).filter(|&index| segment.reach.distance(chunk[index]) == 0.0));
+                if within.is_empty() {
+                    continue;
+                }
+                carried.clear();
+                carried.extend(within.iter().map(|&index| chunk[index]));
+                evaluations += segment.stroke.carry(&mut carried);
+                within.iter().zip(&carried).for_each(|(&index, &point)| chunk[index] = point);
+            }
+            evaluations
+        };
+        points.par_chunks_mut(CHUNK).map(carry).sum()
+    }
+
+    /// Notes triangles that have a vertex that moved.
+    pub(super) fn note_moved(&mut self, triangles: &[u32], count: usize) {
+        self.moved_marks.resize(count);
+        self.moved.extend(triangles.iter().filter(|&&triangle| self.moved_marks.insert(triangle)));
+    }
+
+    pub(super) fn note_move(&mut self, done: &MoveReceipt) {
+        let receipt = &mut self.receipt;
+        receipt.moves += 1;
+        receipt.inserted_vertices += done.inserted_vertices;
+        receipt.removed_vertices += done.removed_vertices;
+        receipt.flipped_edges += done.flipped_edges;
+        receipt.is_limited |= done.is_limited;
+        receipt.evaluations += done.evaluations;
+        let (sum, now) = (&mut receipt.seconds, &done.seconds);
+        sum.select += now.select;
+        sum.flow += now.flow;
+        sum.refine += now.refine;
+        sum.index += now.index;
+        sum.buffers += now.buffers;
+    }
+}

@@ -1,0 +1,367 @@
+//! The surface of a session: topology, positions, attributes and buffers, edited together and undone together.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use isochore_mesh::{Delta, EditDelta, EditMesh, Journaled, Origin, SurfaceTree, TriMesh};
+
+use super::{
+    NormalWeights,
+    buffers::{Changes, DirtyPages, RenderBuffers},
+    marks::Marks,
+};
+
+/// A vertex as the triangles on one side of a seam see it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RenderVertex {
+    pub(super) vertex: u32,
+    /// Where it takes its attributes from; none for a vertex without triangles.
+    pub(super) origin: Option<Origin>,
+}
+
+/// What a triangle has from the mesh as opened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Patch {
+    /// A triangle of the mesh as opened that holds it, or a part of it.
+    pub(super) parent: u32,
+    /// By edge, whether shading breaks there: bits 0, 1 and 2.
+    pub(super) hard: u8,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Surface {
+    pub(super) opened: Arc<TriMesh>,
+    pub(super) topology: EditMesh,
+    pub(super) positions: Journaled<DVec3>,
+    /// By triangle its render vertices, all zero where it was removed: the index buffer itself.
+    pub(super) corners: Journaled<[u32; 3]>,
+    pub(super) patches: Journaled<Patch>,
+    /// Grows only; nothing in it is ever changed.
+    pub(super) render: Journaled<RenderVertex>,
+    pub(super) render_positions: Journaled<[f32; 3]>,
+    pub(super) normals: Journaled<[f32; 3]>,
+    uvs: Vec<Vec<[f32; 2]>>,
+    colors: Vec<[f32; 4]>,
+    pub(super) tree: SurfaceTree,
+    pub(super) weights: NormalWeights,
+    dirty: Dirty,
+    /// Scratch.
+    pub(super) triangle_marks: Marks,
+    pub(super) vertex_marks: Marks,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Dirty {
+    generation: u64,
+    addresses: Vec<usize>,
+    positions: DirtyPages,
+    normals: DirtyPages,
+    attributes: DirtyPages,
+    indices: DirtyPages,
+}
+
+/// The way to the other end of a stroke.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct SurfaceDelta {
+    topology: EditDelta,
+    positions: Delta<DVec3>,
+    corners: Delta<[u32; 3]>,
+    patches: Delta<Patch>,
+    render: Delta<RenderVertex>,
+    render_positions: Delta<[f32; 3]>,
+    normals: Delta<[f32; 3]>,
+}
+
+/// Room in the buffers beyond what the mesh needs as opened, as a share of it, so that addresses stay for a while.
+const SPARE_ROOM: f64 = 0.125;
+
+impl Surface {
+    /// Puts the parts together and fills the buffers.
+    pub(super) fn new(
+        opened: Arc<TriMesh>,
+        topology: EditMesh,
+        corners: Vec<[u32; 3]>,
+        patches: Vec<Patch>,
+        render: Vec<RenderVertex>,
+        tree: SurfaceTree,
+        weights: NormalWeights,
+    ) -> Self {
+        let count = render.len();
+        let position = |render: &RenderVertex| opened.positions[render.vertex as usize].as_vec3().to_array();
+        let mut surface = Self {
+            topology,
+            positions: Journaled::new(opened.positions.clone()),
+            render_positions: Journaled::new(render.iter().map(position).collect()),
+            corners: Journaled::new(corners),
+            patches: Journaled::new(patches),
+            render: Journaled::new(render),
+            normals: Journaled::new(vec![[0.0; 3]; count]),
+            uvs: vec![Vec::new(); opened.corner.uvs.len()],
+            colors: Vec::new(),
+            tree,
+            weights,
+            dirty: Dirty::default(),
+            triangle_marks: Marks::default(),
+            vertex_marks: Marks::default(),
+            opened,
+        };
+        let spare = |length: usize| (length as f64 * SPARE_ROOM) as usize + 1024;
+        surface.render_positions.reserve(spare(count));
+        surface.normals.reserve(spare(count));
+        surface.corners.reserve(spare(surface.corners.items().len()));
+        surface.uvs.iter_mut().for_each(|set| set.reserve(count + spare(count)));
+        if surface.has_colors() {
+            surface.colors.reserve(count + spare(count));
+        }
+        surface.write_attributes();
+        let all: Vec<u32> = (0..surface.topology.vertex_count() as u32).collect();
+        surface.write_normals(&all);
+        surface.dirty.positions.mark_range(0, count);
+        surface.dirty.indices.mark_range(0, surface.corners.items().len());
+        surface.note_addresses();
+        surface
+    }
+
+    /// Corners of a triangle that is there.
+    #[inline]
+    pub(super) fn corners_of(&self, triangle: u32) -> Option<[DVec3; 3]> {
+        let triangle = &self.topology.triangles()[triangle as usize];
+        let positions = self.positions.items();
+        triangle.is_alive().then(|| triangle.vertices.map(|vertex| positions[vertex as usize]))
+    }
+
+    pub(super) fn begin(&mut self) -> usize {
+        self.positions.begin();
+        self.corners.begin();
+        self.patches.begin();
+        self.render.begin();
+        self.render_positions.begin();
+        self.normals.begin();
+        self.topology.begin()
+    }
+
+    pub(super) fn finish(&mut self, alive: usize) -> SurfaceDelta {
+        let mut delta = SurfaceDelta {
+            topology: self.topology.finish(alive),
+            positions: self.positions.finish(),
+            corners: self.corners.finish(),
+            patches: self.patches.finish(),
+            render: self.render.finish(),
+            render_positions: self.render_positions.finish(),
+            normals: self.normals.finish(),
+        };
+        delta.shrink();
+        delta
+    }
+
+    /// Takes everything to the other end of `delta`.
+    pub(super) fn swap(&mut self, delta: &mut SurfaceDelta) {
+        let triangles = self.corners.items().len();
+        let vertices = self.positions.items().len();
+        self.topology.swap(&mut delta.topology);
+        self.positions.swap(&mut delta.positions);
+        self.corners.swap(&mut delta.corners);
+        self.patches.swap(&mut delta.patches);
+        self.render.swap(&mut delta.render);
+        self.render_positions.swap(&mut delta.render_positions);
+        self.normals.swap(&mut delta.normals);
+
+        delta.render_positions.indices().for_each(|index| self.dirty.positions.mark(index));
+        delta.normals.indices().for_each(|index| self.dirty.normals.mark(index));
+        delta.corners.indices().for_each(|index| self.dirty.indices.mark(index));
+        self.dirty.indices.mark_range(triangles, self.corners.items().len());
+        let render = self.render.items().len();
+        self.dirty.positions.mark_range(delta.render_positions.length(), render);
+        self.dirty.normals.mark_range(delta.normals.length(), render);
+        self.write_attributes();
+        self.note_addresses();
+
+        // The boxes: around what moved, and what was edited.
+        let now = self.corners.items().len();
+        self.triangle_marks.clear(now);
+        let mut changed = Vec::new();
+        let mut push = |triangle: u32, marks: &mut Marks| {
+            if (triangle as usize) < now.min(triangles) && marks.insert(triangle) {
+                changed.push(triangle);
+            }
+        };
+        for vertex in delta.positions.indices().filter(|&vertex| (vertex as usize) < vertices) {
+            for half_edge in self.topology.fan(vertex) {
+                push(half_edge / 3, &mut self.triangle_marks);
+            }
+        }
+        for triangle in delta.topology.triangles.indices() {
+            push(triangle, &mut self.triangle_marks);
+        }
+        self.update_tree(&changed);
+    }
+
+    /// Lets the tree follow triangles that moved or were edited, and those that are new or gone.
+    pub(super) fn update_tree(&mut self, changed: &[u32]) {
+        let (triangles, positions) = (self.topology.triangles(), self.positions.items());
+        let corners = |triangle: u32| {
+            let triangle = &triangles[triangle as usize];
+            triangle.is_alive().then(|| triangle.vertices.map(|vertex| positions[vertex as usize]))
+        };
+        self.tree.resize(triangles.len(), &corners);
+        self.tree.update(changed, &corners);
+    }
+
+    /// Brings the buffers up to date where `vertices` moved or their triangles were edited. `moved` are those that moved.
+    pub(super) fn write_buffers(&mut self, moved: &[u32], vertices: &[u32]) {
+        for &vertex in moved {
+            let position = self.positions.get(vertex).as_vec3().to_array();
+            let mut last = u32::MAX;
+            for half_edge in self.topology.fan(vertex) {
+                let render = self.corners.items()[half_edge as usize / 3][half_edge as usize % 3];
+                if render != last {
+                    self.render_positions.set(render, position);
+                    self.dirty.positions.mark(render);
+                }
+                last = render;
+            }
+            if last == u32::MAX {
+                // Without triangles, a vertex of the mesh as opened is its own render vertex, and a removed one is not drawn.
+                if self.render.items()[vertex as usize].origin.is_none() {
+                    self.render_positions.set(vertex, position);
+                    self.dirty.positions.mark(vertex);
+                }
+            }
+        }
+        self.write_attributes();
+        self.write_normals(vertices);
+        self.note_addresses();
+    }
+
+    /// Sets the render vertices of a triangle.
+    pub(super) fn set_corners(&mut self, triangle: u32, corners: [u32; 3]) {
+        if triangle as usize == self.corners.items().len() {
+            self.corners.push(corners);
+        } else {
+            self.corners.set(triangle, corners);
+        }
+        self.dirty.indices.mark(triangle);
+    }
+
+    pub(super) fn set_patch(&mut self, triangle: u32, patch: Patch) {
+        if triangle as usize == self.patches.items().len() {
+            self.patches.push(patch);
+        } else {
+            self.patches.set(triangle, patch);
+        }
+    }
+
+    /// Sets the normal of a render vertex.
+    pub(super) fn set_normal(&mut self, render: u32, normal: [f32; 3]) {
+        if self.normals.get(render) != normal {
+            self.normals.set(render, normal);
+            self.dirty.normals.mark(render);
+        }
+    }
+
+    /// Appends a render vertex of a vertex that stands where it is.
+    pub(super) fn push_render_vertex(&mut self, render: RenderVertex) -> u32 {
+        let position = self.positions.get(render.vertex).as_vec3().to_array();
+        self.render_positions.push(position);
+        self.normals.push([0.0; 3]);
+        let index = self.render.push(render);
+        self.dirty.positions.mark(index);
+        self.dirty.normals.mark(index);
+        index
+    }
+
+    fn has_colors(&self) -> bool {
+        !(self.opened.corner.colors.is_empty() && self.opened.vertex.colors.is_empty())
+    }
+
+    /// Brings texture coordinates and colors to the number of render vertices there are.
+    fn write_attributes(&mut self) {
+        let count = self.render.items().len();
+        let (opened, render) = (&self.opened, self.render.items());
+        let mut known = count;
+        for (index, set) in self.uvs.iter_mut().enumerate() {
+            set.truncate(count);
+            known = known.min(set.len());
+            let uv = |render: &RenderVertex| match &render.origin {
+                Some(origin) => opened.uv_at(index, origin).as_vec2().to_array(),
+                None => [0.0; 2],
+            };
+            set.extend(render[set.len()..].iter().map(uv));
+        }
+        if self.has_colors() {
+            self.colors.truncate(count);
+            known = known.min(self.colors.len());
+            let (opened, render) = (&self.opened, self.render.items());
+            let color = |render: &RenderVertex| {
+                let own = || opened.vertex.colors.get(render.vertex as usize).copied();
+                let color = render.origin.as_ref().map_or_else(own, |origin| opened.color_at(origin));
+                color.unwrap_or_default().as_vec4().to_array()
+            };
+            self.colors.extend(render[self.colors.len()..].iter().map(color));
+        }
+        self.dirty.attributes.mark_range(known, count);
+    }
+
+    /// Notes whether a buffer has moved.
+    fn note_addresses(&mut self) {
+        let fixed = [
+            self.render_positions.items().as_ptr() as usize,
+            self.normals.items().as_ptr() as usize,
+            self.corners.items().as_ptr() as usize,
+            self.colors.as_ptr() as usize,
+        ];
+        let now = fixed.into_iter().chain(self.uvs.iter().map(|set| set.as_ptr() as usize));
+        if !now.clone().eq(self.dirty.addresses.iter().copied()) {
+            self.dirty.addresses = now.collect();
+            self.dirty.generation += 1;
+        }
+    }
+
+    pub(super) fn buffers(&self) -> RenderBuffers<'_> {
+        RenderBuffers {
+            generation: self.dirty.generation,
+            positions: self.render_positions.items(),
+            normals: self.normals.items(),
+            uvs: &self.uvs,
+            colors: &self.colors,
+            indices: self.corners.items(),
+        }
+    }
+
+    pub(super) fn take_changes(&mut self) -> Changes {
+        let render = self.render.items().len();
+        Changes {
+            generation: self.dirty.generation,
+            positions: self.dirty.positions.take(render),
+            normals: self.dirty.normals.take(render),
+            attributes: self.dirty.attributes.take(if self.uvs.is_empty() && self.colors.is_empty() {
+                0
+            } else {
+                render
+            }),
+            indices: self.dirty.indices.take(self.corners.items().len()),
+        }
+    }
+}
+
+impl SurfaceDelta {
+    pub(super) fn bytes(&self) -> usize {
+        self.topology.bytes()
+            + self.positions.bytes()
+            + self.corners.bytes()
+            + self.patches.bytes()
+            + self.render.bytes()
+            + self.render_positions.bytes()
+            + self.normals.bytes()
+    }
+
+    fn shrink(&mut self) {
+        self.topology.shrink();
+        self.positions.shrink();
+        self.corners.shrink();
+        self.patches.shrink();
+        self.render.shrink();
+        self.render_positions.shrink();
+        self.normals.shrink();
+    }
+}

@@ -1,0 +1,81 @@
+//! Volumes, summed over what a stroke has touched and nothing else.
+
+use glam::DVec3;
+use isochore_mesh::CompensatedSum;
+
+use super::{StrokeVolume, stroke::ActiveStroke, surface::Surface};
+
+/// Relative rounding of one signed volume of six products of three differences, and of taking it up into a sum, as a multiple of
+/// the product of the three lengths. A dozen roundings are made; fewer here, and honest sums would break their bound.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Volume that a stroke has moved through the surface, cubic model units.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct MovedVolume {
+    /// Swept by parts of the surface that moved outward.
+    pub outward: f64,
+    /// Swept by parts of the surface that moved inward.
+    pub inward: f64,
+}
+
+impl ActiveStroke {
+    /// Every triangle that the stroke moved or edited.
+    fn touched<'a>(&'a self, surface: &'a Surface) -> impl Iterator<Item = u32> + 'a {
+        let journal = surface.topology.journal();
+        let added = journal.original_len() as u32..journal.items().len() as u32;
+        let is_moved = |triangle: u32| self.moved_marks.contains(triangle);
+        self.moved
+            .iter()
+            .copied()
+            .chain(journal.edited().filter(move |&triangle| !is_moved(triangle)))
+            .chain(added.filter(move |&triangle| !is_moved(triangle)))
+    }
+
+    /// What became of the volume so far.
+    pub(super) fn volume(&self, surface: &Surface) -> StrokeVolume {
+        let journal = surface.topology.journal();
+        // Any point does for a closed difference; one that is near keeps rounding small.
+        let origin =
+            self.touched(surface).find_map(|triangle| surface.corners_of(triangle)).map_or(DVec3::ZERO, |c| c[0]);
+        let mut total = CompensatedSum::default();
+        let mut size = self.remeshed;
+        let mut add = |corners: [DVec3; 3], sign: f64| {
+            let [a, b, c] = corners.map(|corner| corner - origin);
+            total.add(sign * a.dot(b.cross(c)) / 6.0);
+            size += a.length() * b.length() * c.length();
+        };
+        for triangle in self.touched(surface) {
+            if let Some(before) = journal.original(triangle).filter(|before| before.is_alive()) {
+                add(before.vertices.map(|vertex| self.base(surface, vertex)), -1.0);
+            }
+            if let Some(after) = surface.corners_of(triangle) {
+                add(after, 1.0);
+            }
+        }
+        let (splits, remeshing) = (self.splits.value(), self.remeshing.value());
+        StrokeVolume { flow: total.value() - splits - remeshing, splits, remeshing, rounding: ROUNDING * size }
+    }
+
+    /// Volume moved so far. Each triangle counts by the mean of its displacement along its mean normal, so that what goes back and
+    /// forth counts by where it is now.
+    pub(super) fn moved_volume(&self, surface: &Surface) -> MovedVolume {
+        let mut moved = MovedVolume::default();
+        for triangle in self.touched(surface) {
+            let record = surface.topology.triangles()[triangle as usize];
+            if !record.is_alive() {
+                continue;
+            }
+            let before = record.vertices.map(|vertex| self.base(surface, vertex));
+            let after = record.vertices.map(|vertex| surface.position(vertex));
+            let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a) / 2.0;
+            let shift = (0..3).map(|side| after[side] - before[side]).sum::<DVec3>() / 3.0;
+            let swept = 0.5 * (normal(before) + normal(after)).dot(shift);
+            if swept > 0.0 {
+                moved.outward += swept;
+            } else {
+                moved.inward -= swept;
+            }
+        }
+        moved
+    }
+}
