@@ -6,6 +6,8 @@
 mod comparison;
 mod memory;
 mod python_peer;
+mod scan;
+mod surface_peer;
 
 use std::time::Instant;
 
@@ -14,6 +16,8 @@ use cpu_time::ProcessTime;
 pub use comparison::{Comparison, ROWS_VARIABLE};
 pub use memory::peak_bytes;
 pub use python_peer::{PythonPeer, scratch};
+pub use scan::{crossing_scans, scan};
+pub use surface_peer::give_mesh;
 
 /// Rounds of every measurement, after one that warms up.
 const ROUNDS: usize = 9;

@@ -161,11 +161,6 @@ impl Bvh {
         self.depth + 1
     }
 
-    /// Number of each triangle in the mesh, in leaf order.
-    pub(crate) fn order(&self) -> &[u32] {
-        &self.order
-    }
-
     /// Vertex indices of the triangles, in leaf order.
     pub(crate) fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
@@ -186,7 +181,8 @@ impl Node {
     }
 }
 
-fn check(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), BvhError> {
+/// Whether there are triangles, and all have valid indices and finite corners.
+pub(crate) fn check(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), BvhError> {
     if triangles.is_empty() {
         return Err(BvhError::Empty);
     }

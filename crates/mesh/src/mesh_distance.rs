@@ -45,7 +45,8 @@ impl MeshDistance {
     /// See [`SelfIntersectionError`].
     pub fn new(mesh: &TriMesh, monitor: &dyn Monitor) -> Result<Self, SelfIntersectionError> {
         let bvh = Arc::new(Bvh::new(&mesh.positions, &mesh.triangles)?);
-        let is_simple = is_simple(mesh) && SelfIntersections::among(&bvh, &mesh.positions, monitor)?.is_empty();
+        let is_simple =
+            is_simple(mesh) && SelfIntersections::among(&mesh.positions, &mesh.triangles, monitor)?.is_empty();
         let sides = if is_simple {
             Sides::PseudoNormals(Box::new(PseudoNormals::new(&bvh, mesh.positions.len())))
         } else {

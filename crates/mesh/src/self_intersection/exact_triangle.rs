@@ -2,6 +2,7 @@
 //! Floating-Point Arithmetic and Fast Robust Geometric Predicates*, 1997).
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use robust::{Coord, Coord3D};
 
 use crate::Aabb;
@@ -11,26 +12,31 @@ use crate::Aabb;
 pub(super) struct ExactTriangle {
     corners: [DVec3; 3],
     aabb: Aabb,
-    has_area: bool,
+}
+
+/// Coordinates are not larger than two to this power, so that no product of theirs overflows. Nothing else depends on it, since
+/// coordinates much larger than the mesh leave no digits for it.
+const LARGEST_EXPONENT: i32 = 100;
+
+/// `positions`, multiplied by a power of two, which loses nothing: `scale`, unless those that the triangles use get too large.
+pub(super) fn scaled(positions: &[DVec3], triangles: &[[u32; 3]], scale: f64) -> Vec<DVec3> {
+    let used = || triangles.iter().flatten().map(|&vertex| positions[vertex as usize]);
+    let largest = used().fold(0.0, |largest: f64, p| largest.max(p.abs().max_element()));
+    let allowed = libm::ldexp(1.0, LARGEST_EXPONENT - libm::frexp(largest).1);
+    let scale = scale.min(allowed);
+    positions.par_iter().map(|&position| position * scale).collect()
 }
 
 impl ExactTriangle {
-    /// Triangles over `positions`, scaled by a power of two, which loses nothing, so that products cannot overflow.
-    pub(super) fn all(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Self> {
-        let used = || triangles.iter().flatten().map(|&vertex| positions[vertex as usize]);
-        let largest = used().fold(0.0, |largest: f64, p| largest.max(p.abs().max_element()));
-        let scale = if largest > 0.0 { libm::ldexp(1.0, -libm::frexp(largest).1.max(-1000)) } else { 1.0 };
-        triangles.iter().map(|triangle| Self::new(triangle.map(|vertex| positions[vertex as usize] * scale))).collect()
-    }
-
-    fn new(corners: [DVec3; 3]) -> Self {
-        Self { corners, aabb: Aabb::of(corners), has_area: projection(&corners).is_some() }
+    /// The triangle with these corners, whose coordinates are so small that no product of theirs overflows.
+    pub(super) fn new(corners: [DVec3; 3]) -> Self {
+        Self { corners, aabb: Aabb::of(corners) }
     }
 
     /// Whether the triangles have points in common beyond the vertices and edges that they share.
     pub(super) fn intersects(&self, other: &Self) -> bool {
         let apart = self.aabb.min.cmpgt(other.aabb.max) | other.aabb.min.cmpgt(self.aabb.max);
-        if apart.any() || !self.has_area || !other.has_area {
+        if apart.any() || projection(&self.corners).is_none() || projection(&other.corners).is_none() {
             return false;
         }
         let (mut shared, mut count) = ([(0, 0); 3], 0);
