@@ -161,6 +161,11 @@ impl Bvh {
         self.depth + 1
     }
 
+    /// Number of each triangle in the mesh, in leaf order.
+    pub(crate) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
     /// Vertex indices of the triangles, in leaf order.
     pub(crate) fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
