@@ -10,3 +10,5 @@ mod folder;
 mod interruption;
 #[path = "command/results.rs"]
 mod results;
+#[path = "command/stream.rs"]
+mod stream;

@@ -54,13 +54,18 @@ pub struct RunArguments {
     #[arg(value_name = "RECIPE")]
     pub recipe: PathBuf,
 
-    /// Deformed mesh (.obj .gltf .glb .ply .stl .off) [default: the recipe's output.mesh]
+    /// Deformed mesh (.obj .gltf .glb .ply .stl .off; of a stream as its input) [default: the recipe's output.mesh]
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
     /// Report, JSON [default: the recipe's output.report]
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+
+    /// Deform the target as bare points, chunk by chunk, so that it need not fit into memory: .ply, whose faces and other
+    /// properties are passed through, or an N×3 array .npy; no stamps, refinement or volume lock
+    #[arg(long)]
+    pub stream: bool,
 
     /// Setting that wins over the recipe, such as tools.ball.support=0.2 or stroke.0.tool=ball
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -264,4 +269,6 @@ pub enum Document {
     Recipe,
     /// What `run` writes about it
     Report,
+    /// What `run --stream` writes about it
+    StreamReport,
 }

@@ -7,7 +7,7 @@ use std::{
 
 use isochore_mesh::{
     Cancelled,
-    io::{ReadError, WriteError},
+    io::{PointStreamError, ReadError, WriteError},
 };
 use isochore_sculpt::{
     ReplayError,
@@ -27,6 +27,8 @@ pub(crate) enum CommandError {
     ReadMesh(#[from] ReadError),
     #[error(transparent)]
     WriteMesh(#[from] WriteError),
+    #[error(transparent)]
+    Points(#[from] PointStreamError),
     #[error("{}: {problem}", path.display())]
     File { path: PathBuf, problem: String },
     #[error("interrupted; nothing was written")]
@@ -81,6 +83,7 @@ impl CommandError {
                 | WriteError::Invalid { path, .. }
                 | WriteError::TooLarge { path, .. },
             ) => Some(path),
+            Self::Points(error) => error.path(),
             Self::Usage(_) | Self::Interrupted => None,
         };
         if let Some(file) = file {

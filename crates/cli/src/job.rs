@@ -72,21 +72,45 @@ impl Job {
         self.read_curves()?;
         let names = self.recipe.mesh_names().into_iter();
         let meshes: Meshes = names
-            .map(|name| Ok((name.to_owned(), io::read(beside(&self.path, name))?)))
+            .map(|name| Ok((name.to_owned(), io::read(self.beside(name))?)))
             .collect::<Result<_, CommandError>>()?;
         if let Some(VertexWeights::File(name)) = &self.recipe.mask.vertices {
             let target = self.recipe.target.mesh.as_ref().and_then(|name| meshes.get(name));
-            let weights = read_weights(&beside(&self.path, name), target.map(|mesh| mesh.positions.len()))?;
+            let weights = read_weights(&self.beside(name), target.map(|mesh| mesh.positions.len()))?;
             self.recipe.mask.vertices = Some(VertexWeights::Values(weights));
         }
         Ok(meshes)
+    }
+
+    /// Reads the meshes of tools alone, and the points of spines, for a target that is not read whole.
+    pub(crate) fn read_tools(&mut self) -> Result<Meshes, CommandError> {
+        self.read_curves()?;
+        let target = self.recipe.target.mesh.take();
+        let meshes =
+            self.recipe.mesh_names().into_iter().map(|name| Ok((name.to_owned(), io::read(self.beside(name))?)));
+        let meshes = meshes.collect();
+        self.recipe.target.mesh = target;
+        meshes
+    }
+
+    /// The file that the recipe calls `name`.
+    pub(crate) fn beside(&self, name: &str) -> PathBuf {
+        beside(&self.path, name)
+    }
+
+    /// The error of a recipe that could not be followed.
+    pub(crate) fn failed(&self, source: ReplayError) -> CommandError {
+        match source {
+            ReplayError::Cancelled(_) => CommandError::Interrupted,
+            source => CommandError::Replay { path: self.path.clone(), source },
+        }
     }
 
     fn read_curves(&mut self) -> Result<(), CommandError> {
         let names: Vec<String> = self.recipe.curve_names().into_iter().map(str::to_owned).collect();
         for name in names {
             // Files of spines may have tangents, which a spline makes itself.
-            let table = CsvTable::read(&beside(&self.path, &name), &[3, 6])?;
+            let table = CsvTable::read(&self.beside(&name), &[3, 6])?;
             let points: Vec<[f64; 3]> = table.rows.iter().map(|row| [row[0], row[1], row[2]]).collect();
             self.recipe.inline_curve(&name, &points);
         }
@@ -101,10 +125,7 @@ impl Job {
         mut staging: Staging,
         console: &Console,
     ) -> Result<Report, CommandError> {
-        let failed = |source| match source {
-            ReplayError::Cancelled(_) => CommandError::Interrupted,
-            source => CommandError::Replay { path: self.path.clone(), source },
-        };
+        let failed = |source| self.failed(source);
         // All places are taken first: whoever lacks a folder should not learn it after the work.
         let drafts = Drafts::new(&self.outputs, &mut staging)?;
         let replay = replay(&self.recipe, meshes, console).map_err(failed)?;

@@ -28,6 +28,7 @@ mod run;
 mod schema;
 mod spine_file;
 mod staging;
+mod stream;
 mod sweep;
 
 use std::{ffi::OsString, process::ExitCode};

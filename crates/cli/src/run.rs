@@ -6,6 +6,7 @@ use isochore_sculpt::Report;
 
 use crate::{
     Outcome, arguments::RunArguments, command_error::CommandError, console::Console, job::Job, staging::Staging,
+    stream::stream,
 };
 
 pub(crate) fn run(arguments: &RunArguments, console: &Console) -> Result<Outcome, CommandError> {
@@ -19,6 +20,9 @@ pub(crate) fn run(arguments: &RunArguments, console: &Console) -> Result<Outcome
     }
     if job.outputs.mesh.is_none() && job.outputs.report.is_none() && !console.is_json() {
         return Err(CommandError::file(&job.path, "asks for no output: set output.mesh or pass --output FILE"));
+    }
+    if arguments.stream {
+        return stream(job, console);
     }
     let meshes = job.read_meshes()?;
     let read_seconds = start.elapsed().as_secs_f64();

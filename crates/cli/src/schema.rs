@@ -11,6 +11,7 @@ pub(crate) fn schema(arguments: &SchemaArguments, console: &Console) -> Result<O
     console.print_json(&match arguments.document {
         Document::Recipe => isochore_sculpt::schema::recipe(),
         Document::Report => isochore_sculpt::schema::report(),
+        Document::StreamReport => isochore_sculpt::schema::stream_report(),
     });
     Ok(Outcome::Done)
 }

@@ -1,7 +1,7 @@
 //! Mesh files: OBJ, glTF, GLB, PLY, STL and OFF.
 //!
 //! [`read`] and [`write`] choose the format by the file's extension; [`read_bytes`] and [`write_to`] need no files.
-//! What a format can hold decides what survives: see [`Format`].
+//! What a format can hold decides what survives: see [`Format`]. [`PointStream`] is for points that do not fit into memory.
 //!
 //! ```
 //! use isochore_mesh::io::{self, Format};
@@ -20,6 +20,7 @@ mod gltf;
 mod obj;
 mod off;
 mod ply;
+mod point_stream;
 mod polygon;
 mod read_error;
 mod split;
@@ -31,6 +32,7 @@ use std::io::Write;
 use std::path::Path;
 
 pub use format::Format;
+pub use point_stream::{PointStream, PointStreamError};
 pub use read_error::{LineProblem, ParseError, ReadError};
 pub use write_error::WriteError;
 

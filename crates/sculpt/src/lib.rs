@@ -6,6 +6,7 @@
 //!   and so serves as the log of a session as well.
 //! - A [`Scene`] holds the objects that a recipe describes: meshes, distances, tools, strokes.
 //! - To [`replay`] is to deform the target of a recipe. A [`Report`] tells what came of it, measured on the mesh as written.
+//! - A [`PointFlow`] carries points that are no mesh, and need not be all there at once.
 //!
 //! ```
 //! use isochore_mesh::Silent;
@@ -29,14 +30,18 @@
 //!
 //! Nothing here knows of files: meshes come loaded, by the names that the recipe gives them.
 
+mod point_flow;
 pub mod recipe;
 mod replay;
 mod report;
 mod scene;
 pub mod schema;
 pub mod session;
+mod stream_report;
 
+pub use point_flow::PointFlow;
 pub use recipe::Recipe;
 pub use replay::{Meshes, PointReplay, Replay, ReplayError, replay, replay_points};
 pub use report::{Bounds, Measures, Report, Seconds, Source, StrokeReport};
 pub use scene::Scene;
+pub use stream_report::{StreamReport, StreamSeconds};

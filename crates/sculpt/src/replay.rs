@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use isochore_field as field;
-use isochore_mesh::{Cancelled, DistanceFieldError, Monitor, TriMesh};
+use isochore_mesh::{Aabb, Cancelled, DistanceFieldError, Monitor, TriMesh};
 
 use crate::{
-    recipe::{Recipe, RecipeError, RecipeProblem, Stroke},
+    point_flow::PointFlow,
+    recipe::{Recipe, RecipeError},
     scene::Scene,
 };
 
@@ -56,23 +57,9 @@ pub fn replay_points(
     points: &[DVec3],
     monitor: &dyn Monitor,
 ) -> Result<PointReplay, ReplayError> {
-    if let Some(index) = recipe.strokes.iter().position(|stroke| matches!(stroke, Stroke::Stamp(_))) {
-        return Err(stamp_on_points(index).into());
-    }
-    let (strokes, mut warnings) = Scene::strokes(recipe, meshes, points, monitor)?;
-    if recipe.volume.lock {
-        warnings.push("points enclose no volume: the volume lock was left out".to_owned());
-    }
-    let points = field::flow_points(points, &strokes, monitor).map_err(|error| match error {
-        field::FlowError::Cancelled(cancelled) => ReplayError::Cancelled(cancelled),
-        field::FlowError::Stamp { stroke } => stamp_on_points(stroke).into(),
-    })?;
-    Ok(PointReplay { points, warnings })
-}
-
-fn stamp_on_points(index: usize) -> RecipeError {
-    let text = "is a stamp, which presses into a surface, and points have none; give a mesh, or remove this stroke";
-    RecipeError::new(&format!("stroke.{index}"), RecipeProblem::Other(text.to_owned()))
+    let flow = PointFlow::new(recipe, meshes, Aabb::of(points.iter().copied()), monitor)?;
+    let points = flow.carry(points, monitor)?;
+    Ok(PointReplay { points, warnings: flow.warnings })
 }
 
 /// Why a recipe could not be carried out.

@@ -203,7 +203,7 @@ impl Report {
                 ..Seconds::default()
             },
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            recipe_sha256: Sha256::digest(source.text).iter().map(|byte| format!("{byte:02x}")).collect(),
+            recipe_sha256: sha256(source.text),
             overrides: source.overrides.to_vec(),
             warnings: replay.scene.warnings.iter().cloned().chain(notes).collect(),
             before,
@@ -215,6 +215,11 @@ impl Report {
     pub fn missed_promises(&self) -> impl Iterator<Item = &str> {
         self.promises.iter().filter(|(_, is_kept)| !**is_kept).map(|(name, _)| name.as_str())
     }
+}
+
+/// SHA-256 in hexadecimal digits.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The relative change from one volume to another; none where there is nothing to compare with.

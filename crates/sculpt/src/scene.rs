@@ -66,7 +66,7 @@ impl Scene {
         let start = Instant::now();
         let mut strokes = workshop.strokes()?;
         if recipe.mask != Mask::default() {
-            strokes = mask::masked(strokes, recipe, &target)?;
+            strokes = mask::masked(strokes, recipe, Some(&target), target.bounds())?;
         }
         let refine = field::RefineOptions {
             volume: recipe.refine.volume,
@@ -83,26 +83,27 @@ impl Scene {
         })
     }
 
-    /// Makes the strokes of `recipe` alone, for `points` that are no mesh, and what the user should know about them.
+    /// Makes the strokes of `recipe` alone, for points in `bounds` that are no mesh, and what the user should know about them.
     ///
-    /// A mask belongs to the target, so with one the target's mesh must be there too.
+    /// Weights of vertices belong to the target, so with those its mesh must be there too.
     ///
     /// # Errors
     /// [`ReplayError`], naming the key of the recipe that cannot be followed.
     pub fn strokes(
         recipe: &Recipe,
         meshes: &Meshes,
-        points: &[DVec3],
+        bounds: Aabb,
         monitor: &dyn Monitor,
     ) -> Result<(Vec<field::Stroke>, Vec<String>), ReplayError> {
         recipe.validate()?;
+        let target = target(&recipe.target, meshes);
         // With the bounds of the mesh, points take the very steps of its vertices.
-        let bounds =
-            target(&recipe.target, meshes).map_or_else(|_| Aabb::of(points.iter().copied()), |mesh| mesh.bounds());
+        let bounds = target.as_ref().map_or(bounds, TriMesh::bounds);
         let mut workshop = Workshop { recipe, meshes, monitor, bounds, warnings: Vec::new() };
         let mut strokes = workshop.strokes()?;
         if recipe.mask != Mask::default() {
-            strokes = mask::masked(strokes, recipe, &target(&recipe.target, meshes)?)?;
+            let target = if recipe.mask.vertices.is_some() { Some(&target?) } else { None };
+            strokes = mask::masked(strokes, recipe, target, bounds)?;
         }
         Ok((strokes, workshop.warnings))
     }
@@ -309,6 +310,14 @@ fn target_mesh(shape: &TargetShape) -> TriMesh {
 
 fn find<'a>(meshes: &'a Meshes, name: &str) -> Result<&'a TriMesh, ReplayError> {
     meshes.get(name).ok_or_else(|| ReplayError::MissingMesh { name: name.to_owned() })
+}
+
+/// `points` placed in the world as the target of the recipe is.
+pub(crate) fn place(target: &Target, points: Vec<DVec3>) -> Vec<DVec3> {
+    if target.transform == Transform::default() {
+        return points;
+    }
+    transformed(&TriMesh::new(points, Vec::new()), &target.transform).positions
 }
 
 fn transformed(mesh: &TriMesh, transform: &Transform) -> TriMesh {

@@ -2,7 +2,7 @@
 
 use schemars::{Schema, schema_for};
 
-use crate::{Recipe, Report};
+use crate::{Recipe, Report, StreamReport};
 
 /// The schema of recipes, for TOML and JSON alike.
 pub fn recipe() -> Schema {
@@ -12,4 +12,9 @@ pub fn recipe() -> Schema {
 /// The schema of reports.
 pub fn report() -> Schema {
     schema_for!(Report)
+}
+
+/// The schema of reports on streams of points.
+pub fn stream_report() -> Schema {
+    schema_for!(StreamReport)
 }

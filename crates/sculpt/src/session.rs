@@ -118,7 +118,7 @@ impl Session {
         check(&options)?;
         let mask = match options.mask == Mask::default() {
             true => None,
-            false => Some(Arc::new(scene::mask::mask(&options.mask, &mesh)?)),
+            false => Some(Arc::new(scene::mask::mask(&options.mask, Some(&mesh))?)),
         };
         let opened_bounds = mesh.bounds();
         let opened_volume = ClosedMesh::new(&mesh).ok().map(|closed| closed.volume());

@@ -21,6 +21,11 @@ fn report_is_current() {
 }
 
 #[test]
+fn stream_report_is_current() {
+    check("stream-report", isochore_sculpt::schema::stream_report());
+}
+
+#[test]
 fn every_kind_refuses_unknown_keys() {
     let schema = Value::from(isochore_sculpt::schema::recipe());
     let mut kinds = 0;

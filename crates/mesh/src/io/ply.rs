@@ -11,5 +11,8 @@ mod reader;
 mod vertices;
 mod writer;
 
+pub(super) use header::{Element, Header};
+pub(super) use number::{ByteOrder, Number};
 pub(super) use reader::parse;
+pub(super) use vertices::position_scalars;
 pub(super) use writer::write;

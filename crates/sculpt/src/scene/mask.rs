@@ -4,21 +4,21 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use isochore_field as field;
-use isochore_mesh::TriMesh;
+use isochore_mesh::{Aabb, TriMesh};
 
 use crate::{
     recipe::{Mask, Recipe, RecipeError, RecipeProblem, VertexWeights},
     replay::ReplayError,
 };
 
-/// The strokes of `recipe`, whose target is `target`, held back by its mask.
+/// The strokes of `recipe`, held back by its mask. What is deformed is in `bounds`; weights of vertices belong to `target`.
 pub(super) fn masked(
     strokes: Vec<field::Stroke>,
     recipe: &Recipe,
-    target: &TriMesh,
+    target: Option<&TriMesh>,
+    bounds: Aabb,
 ) -> Result<Vec<field::Stroke>, ReplayError> {
     let mask = Arc::new(mask(&recipe.mask, target)?);
-    let bounds = target.bounds();
     let masked = |(index, stroke): (usize, &field::Stroke)| {
         let stroke = stroke.masked(&mask, bounds, recipe.integrate.step);
         stroke.map_err(|source| ReplayError::Stroke { index, source })
@@ -26,8 +26,8 @@ pub(super) fn masked(
     strokes.iter().enumerate().map(masked).collect()
 }
 
-/// The mask that plain data describe for `target`.
-pub(crate) fn mask(mask: &Mask, target: &TriMesh) -> Result<field::Mask, RecipeError> {
+/// What is painted on vertices counts where their mesh, the `target`, is there.
+pub(crate) fn mask(mask: &Mask, target: Option<&TriMesh>) -> Result<field::Mask, RecipeError> {
     let wrong =
         |key: String| move |error: field::MaskError| RecipeError::new(&key, RecipeProblem::Other(error.to_string()));
     let pins = mask.pins.iter().enumerate().map(|(index, pin)| {
@@ -39,9 +39,9 @@ pub(crate) fn mask(mask: &Mask, target: &TriMesh) -> Result<field::Mask, RecipeE
         field::MirrorPlane::new(point, normal).map_err(wrong(format!("mask.mirror.{index}")))
     });
     let (pins, mirrors) = (pins.collect::<Result<_, _>>()?, mirrors.collect::<Result<_, _>>()?);
-    let vertices = match &mask.vertices {
-        None => None,
-        Some(VertexWeights::Values(weights)) => {
+    let vertices = match (&mask.vertices, target) {
+        (None, _) | (_, None) => None,
+        (Some(VertexWeights::Values(weights)), Some(target)) => {
             let vertices = field::VertexMask::new(target, weights, mask.fade);
             Some(vertices.map_err(|error| match error {
                 field::MaskError::Fade(_) | field::MaskError::NoEdges | field::MaskError::TooManySamples { .. } => {
@@ -50,7 +50,7 @@ pub(crate) fn mask(mask: &Mask, target: &TriMesh) -> Result<field::Mask, RecipeE
                 error => wrong("mask.vertices".to_owned())(error),
             })?)
         }
-        Some(VertexWeights::File(name)) => {
+        (Some(VertexWeights::File(name)), _) => {
             let text = format!("the file `{name}` was not loaded; put its numbers in its place");
             return Err(RecipeError::new("mask.vertices", RecipeProblem::Other(text)));
         }

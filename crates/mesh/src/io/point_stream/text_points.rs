@@ -1,0 +1,52 @@
+//! Points in lines of text.
+
+use glam::DVec3;
+
+use crate::io::LineProblem;
+use crate::io::text::Words;
+
+/// The numbers in these `columns` of a line.
+pub(super) fn read_point(line: &[u8], columns: [usize; 3]) -> Result<DVec3, LineProblem> {
+    let mut point = DVec3::ZERO;
+    for (axis, column) in columns.into_iter().enumerate() {
+        let mut words = Words { rest: line };
+        let found = words.by_ref().take(column).count();
+        match words.next_number()? {
+            Some(number) if found == column => point[axis] = number,
+            _ => return Err(LineProblem::TooFewWords),
+        }
+    }
+    Ok(point)
+}
+
+/// Writes `line` with the numbers in these `columns` replaced, and everything else as it stands.
+///
+/// Numbers are the shortest decimals that read back as the same number, of single or double precision. One that is the same as
+/// before keeps its digits.
+pub(super) fn write_point(line: &[u8], columns: [usize; 3], point: DVec3, is_single: bool, out: &mut Vec<u8>) {
+    let mut words = Words { rest: line };
+    let mut written = 0;
+    let mut column = 0;
+    while let Some(word) = words.next() {
+        if let Some(axis) = columns.iter().position(|&wanted| wanted == column) {
+            let end = line.len() - words.rest.len();
+            out.extend_from_slice(&line[written..end - word.len()]);
+            written = end;
+            let value = point[axis];
+            let is_same = fast_float2::parse::<f64, _>(word).is_ok_and(|old| old.to_bits() == value.to_bits());
+            if is_same {
+                out.extend_from_slice(word);
+            } else {
+                push_number(value, is_single, out);
+            }
+        }
+        column += 1;
+    }
+    out.extend_from_slice(&line[written..]);
+}
+
+fn push_number(value: f64, is_single: bool, out: &mut Vec<u8>) {
+    let mut digits = ryu::Buffer::new();
+    let digits = if is_single { digits.format_finite(value as f32) } else { digits.format_finite(value) };
+    out.extend_from_slice(digits.strip_suffix(".0").unwrap_or(digits).as_bytes());
+}

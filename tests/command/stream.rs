@@ -1,0 +1,204 @@
+//! Points that are streamed: the bits of a replay in memory, everything else of the file passed through.
+
+use std::fs;
+
+use glam::DVec3;
+use isochore_mesh::{Silent, io::PointStream, primitives};
+use isochore_sculpt::{Meshes, Recipe, recipe::Format, replay_points};
+
+use crate::folder::{Folder, PRESS};
+
+/// `PRESS` on the file `name`, which goes to `out` with the same extension; with a region, whose steps depend on the bounds.
+fn recipe(name: &str) -> String {
+    let extension = name.rsplit('.').next().unwrap();
+    let region = "[[stroke]]\nkind = \"region\"\nmotion = { rotate = { origin = [0, 0, 0], axis = [1, 0, 0], degrees = 20.0 } }\n\
+                  inner = { kind = \"half_space\", point = [0, 0, 0], normal = [0, 0, 1] }\nouter_distance = 0.5\n\n[output]";
+    PRESS
+        .replace(
+            "shape = { kind = \"icosphere\", radius = 1.0, subdivisions = 3 }",
+            &format!("mesh = \"{name}\"\ntransform = {{ scale = 1.1 }}"),
+        )
+        .replace("[output]", region)
+        .replace("out.ply", &format!("out.{extension}"))
+}
+
+fn points() -> Vec<DVec3> {
+    // Single precision holds them, so that files of both precisions begin with the same points.
+    primitives::icosphere(1.0, 4).positions.iter().map(|point| point.as_vec3().as_dvec3()).collect()
+}
+
+/// Where the recipe carries the points in memory.
+fn carried(name: &str) -> Vec<DVec3> {
+    let recipe = Recipe::parse(&recipe(name), Format::Toml, &[]).unwrap();
+    let placed: Vec<DVec3> = points().iter().map(|point| *point * 1.1).collect();
+    replay_points(&recipe, &Meshes::new(), &placed, &Silent).unwrap().points
+}
+
+fn numpy_header(shape: &str, descr: &str) -> Vec<u8> {
+    let mut text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}");
+    text.extend(std::iter::repeat_n(' ', 117 - text.len()));
+    let mut header = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    header.extend_from_slice(text.as_bytes());
+    header.push(b'\n');
+    header
+}
+
+/// A PLY file in little or big endian whose vertices have a property before, between and after the coordinates, with an element
+/// before them and faces, strange ones too, after them.
+fn binary_ply(is_big: bool, points: &[DVec3]) -> Vec<u8> {
+    let order = if is_big { "big" } else { "little" };
+    let mut file = format!(
+        "ply\nformat binary_{order}_endian 1.0\ncomment kept\nelement camera 2\nproperty ushort number\nelement vertex {}\n\
+         property uchar flag\nproperty float x\nproperty float y\nproperty short between\nproperty float z\nproperty double quality\n\
+         element face 1\nproperty list uchar int vertex_indices\nend_header\n",
+        points.len()
+    )
+    .into_bytes();
+    file.extend([7, 8, 9, 10]);
+    for (index, point) in points.iter().enumerate() {
+        let number = |value: f64| if is_big { (value as f32).to_be_bytes() } else { (value as f32).to_le_bytes() };
+        file.push(index as u8);
+        file.extend(number(point.x));
+        file.extend(number(point.y));
+        file.extend([1, 2]);
+        file.extend(number(point.z));
+        file.extend([3; 8]);
+    }
+    file.extend([0, 42]);
+    file
+}
+
+#[test]
+fn arrays_get_the_bits_of_a_replay_in_memory() {
+    let mut file = numpy_header(&format!("({}, 3)", points().len()), "<f8");
+    let header = file.clone();
+    points().iter().for_each(|point| point.to_array().iter().for_each(|x| file.extend(x.to_le_bytes())));
+    let folder = Folder::with(&[("press.toml", &recipe("in.npy"))]);
+    fs::write(folder.path("in.npy"), &file).unwrap();
+    for threads in ["1", "2"] {
+        folder.run(&["run", "press.toml", "--stream", "--report", "report.json", "--threads", threads]).expect(0);
+        let mut expected = header.clone();
+        let carried = carried("in.npy");
+        carried.iter().for_each(|point| point.to_array().iter().for_each(|x| expected.extend(x.to_le_bytes())));
+        assert!(folder.read("out.npy") == expected);
+        let report = folder.json("report.json");
+        assert_eq!(report["points"], carried.len());
+        assert_eq!(report["strokes"], serde_json::json!(["move", "region"]));
+        let highest = carried.iter().map(|point| point.z).fold(f64::NEG_INFINITY, f64::max);
+        assert_eq!(report["bounds_after"]["max"][2], highest);
+        assert!(report["bounds_before"]["max"][2].as_f64().unwrap() == 1.1);
+        assert!(report["warnings"][0].as_str().unwrap().contains("lock"));
+    }
+}
+
+#[test]
+fn binary_ply_keeps_all_but_the_coordinates() {
+    for is_big in [false, true] {
+        let folder = Folder::with(&[("press.toml", &recipe("in.ply"))]);
+        fs::write(folder.path("in.ply"), binary_ply(is_big, &points())).unwrap();
+        folder.run(&["run", "press.toml", "--stream"]).expect(0);
+        assert!(folder.read("out.ply") == binary_ply(is_big, &carried("in.ply")), "big endian: {is_big}");
+    }
+}
+
+#[test]
+fn text_ply_keeps_its_words() {
+    let file = |points: &[DVec3], gap: &str| {
+        let mut text = format!(
+            "ply\nformat ascii 1.0\ncomment kept\nelement vertex {}\nproperty uchar flag\nproperty double x\nproperty double y\n\
+             property double z\nproperty list uchar int ring\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n",
+            points.len()
+        );
+        points.iter().for_each(|p| text.push_str(&format!("007{gap} {} {} {} 2 1 1\n", p.x, p.y, p.z)));
+        text + "03 00 1 2\n"
+    };
+    let folder = Folder::with(&[("press.toml", &recipe("in.ply")), ("in.ply", &file(&points(), "\t"))]);
+    folder.run(&["run", "press.toml", "--stream"]).expect(0);
+    assert_eq!(String::from_utf8(folder.read("out.ply")).unwrap(), file(&carried("in.ply"), "\t"));
+}
+
+#[test]
+fn chunks_of_any_size_are_the_same() {
+    let folder = Folder::with(&[]);
+    let path = folder.path("in.ply");
+    fs::write(&path, binary_ply(true, &points())).unwrap();
+    let copy = |most: usize| {
+        let mut stream = PointStream::open(&path).unwrap();
+        let (mut copy, mut points, mut chunks) = (Vec::new(), Vec::new(), 0);
+        stream.copy_before(&mut copy).unwrap();
+        while stream.read_chunk(most, &mut points).unwrap() {
+            points.iter_mut().for_each(|point| *point *= 0.5);
+            stream.write_chunk(&points, &mut copy).unwrap();
+            chunks += 1;
+        }
+        stream.copy_after(&mut copy).unwrap();
+        (copy, chunks)
+    };
+    let halved: Vec<DVec3> = points().iter().map(|point| *point * 0.5).collect();
+    for (most, chunks) in [(1, 2562), (1000, 3), (2562, 1), (usize::MAX, 1)] {
+        assert!(copy(most) == (binary_ply(true, &halved), chunks), "{most}");
+    }
+}
+
+/// Runs the recipe on a file of these bytes, beside an output of earlier times.
+#[track_caller]
+fn refuse(name: &str, bytes: &[u8], arguments: &[&str], words: &[&str]) {
+    let folder = Folder::with(&[("press.toml", &recipe(name))]);
+    fs::write(folder.path(name), bytes).unwrap();
+    fs::write(folder.path("out.ply"), "of earlier times").unwrap();
+    let before = folder.contents();
+    folder.run(&[&["run", "press.toml", "--stream"], arguments].concat()).expect_error(2, words);
+    assert_eq!(folder.contents(), before);
+}
+
+#[test]
+fn broken_files_are_refused_by_place() {
+    let whole = binary_ply(false, &points());
+    let header = whole.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
+    let place = format!("in.ply: the file is truncated: 2562 points announced, but it ends at byte {}", header + 200);
+    refuse("in.ply", &whole[..header + 200], &[], &[&place]);
+    let mut infinite = whole.clone();
+    // Four bytes of the element before, records of 23 bytes, and a byte before x.
+    infinite[header + 4 + 23 * 2 + 1..][..4].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    refuse("in.ply", &infinite, &[], &["in.ply: point 2 ", &format!("at byte {}", header + 50), "not a finite number"]);
+
+    let text =
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    refuse(
+        "in.ply",
+        format!("{text}0 0 0\n0 0 none\n").as_bytes(),
+        &[],
+        &["point 1 on line 9: 'none' is not a finite number"],
+    );
+    refuse(
+        "in.ply",
+        format!("{text}0 0 0\n").as_bytes(),
+        &[],
+        &["truncated: 2 points announced, but it ends at line 8"],
+    );
+    refuse("in.ply", text.replace("float z", "int z").as_bytes(), &[], &["in.ply", "float or double"]);
+    refuse("in.ply", text.replace("float z", "list uchar int z").as_bytes(), &[], &["in.ply", "x, y and z"]);
+    refuse("in.ply", b"solid", &[], &["in.ply: line 1"]);
+    let list_first =
+        text.replace("ascii", "binary_little_endian").replace("vertex 2\n", "vertex 2\nproperty list uchar int ring\n");
+    refuse("in.ply", list_first.as_bytes(), &[], &["in.ply", "lists before or among its vertices"]);
+
+    refuse("in.npy", b"\x93NUMPY\x01", &[], &["in.npy", "truncated in its header"]);
+    refuse("in.npy", &numpy_header("(4, 2)", "<f8"), &[], &["in.npy", "[4, 2]", "(N, 3)"]);
+    refuse("in.npy", &numpy_header("(4, 3)", "<i4"), &[], &["in.npy", "<i4", "f4 or f8"]);
+    refuse("in.npy", &numpy_header("(4, 3)", "<f4"), &[], &["in.npy", "4 points announced", "byte 128"]);
+    refuse("in.obj", b"", &[], &["in.obj", ".ply and .npy alone"]);
+}
+
+#[test]
+fn what_needs_a_mesh_is_refused_by_key() {
+    let whole = binary_ply(false, &points());
+    let with = |setting: &str, words: &[&str]| refuse("in.ply", &whole, &["--set", setting], words);
+    with("promise.volume=0.1", &["promise.volume", "needs a whole mesh"]);
+    with("output.preview=out.png", &["output.preview", "needs a whole mesh"]);
+    with("mask.vertices=[1, 0]", &["mask.vertices", "needs a whole mesh"]);
+    with("stroke.0.kind=stamp", &["stroke.0", "stamp"]);
+    refuse("in.ply", &whole, &["--output", "out.obj"], &["out.obj", "same extension"]);
+    let folder = Folder::with(&[("press.toml", PRESS)]);
+    folder.run(&["run", "press.toml", "--stream"]).expect_error(2, &["target", "needs target.mesh"]);
+}
