@@ -176,8 +176,8 @@ impl PointStream {
             let point = self.read - (points.len() - bad) as u64;
             return Err(PointStreamError::TooLarge { path: self.path.clone(), point });
         }
-        let bytes = match &self.layout.kind {
-            &Kind::Binary { size, offsets, number, order, .. } => {
+        let bytes = match self.layout.kind {
+            Kind::Binary { size, offsets, number, order, .. } => {
                 assert_eq!(points.len() * size, self.chunk.len(), "as many points as were read");
                 for (record, point) in self.chunk.chunks_exact_mut(size).zip(points) {
                     for (at, coordinate) in offsets.into_iter().zip(point.to_array()) {
@@ -186,7 +186,7 @@ impl PointStream {
                 }
                 &self.chunk
             }
-            &Kind::Text { columns, .. } => {
+            Kind::Text { columns, .. } => {
                 self.out.clear();
                 let mut lines = self.chunk.split_inclusive(|&byte| byte == b'\n');
                 for point in points {
