@@ -40,7 +40,7 @@ pub(crate) fn demo(arguments: &DemoArguments, console: &Console) -> Result<Outco
     staging.write(&draft, RECIPE.as_bytes())?;
 
     let job = Job::parse(&recipe_path, RECIPE.as_bytes().to_vec(), &[])?;
-    let report = job.carry_out(&meshes, start.elapsed().as_secs_f64(), staging, console)?;
+    let report = job.carry_out(meshes, start.elapsed().as_secs_f64(), staging, console)?;
     console.finish();
     if !console.is_json() {
         let first_line = RECIPE.lines().next().unwrap_or_default();

@@ -120,7 +120,7 @@ impl Job {
     /// Deforms the target and puts all outputs in place, together with what `staging` already holds.
     pub(crate) fn carry_out(
         &self,
-        meshes: &Meshes,
+        meshes: Meshes,
         read_seconds: f64,
         mut staging: Staging,
         console: &Console,
@@ -128,13 +128,15 @@ impl Job {
         let failed = |source| self.failed(source);
         // All places are taken first: whoever lacks a folder should not learn it after the work.
         let drafts = Drafts::new(&self.outputs, &mut staging)?;
-        let replay = replay(&self.recipe, meshes, console).map_err(failed)?;
+        let replay = replay(&self.recipe, &meshes, console).map_err(failed)?;
+        // The scene has its own target; a second one would take memory while the meshes are measured.
+        drop(meshes);
 
         let start = Instant::now();
         let mut written = None;
         if let Some(Draft { path, format }) = &drafts.mesh {
             write_mesh(&staging, path, &replay.deformed.mesh)?;
-            written = Some(format.stored(&replay.deformed.mesh));
+            written = format.is_single_precision().then(|| format.stored(&replay.deformed.mesh));
         }
         if let Some(draft) = &drafts.preview {
             let camera =

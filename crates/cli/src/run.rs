@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &RunArguments, console: &Console) -> Result<Outcome
     }
     let meshes = job.read_meshes()?;
     let read_seconds = start.elapsed().as_secs_f64();
-    let report = job.carry_out(&meshes, read_seconds, Staging::new(console.interrupt()), console)?;
+    let report = job.carry_out(meshes, read_seconds, Staging::new(console.interrupt()), console)?;
     Ok(conclude(&report, job.outputs.mesh.as_deref(), console))
 }
 
