@@ -1,96 +1,145 @@
-//! Reading and writing of mesh files. Reading is measured by the library's own time where a library reads.
+//! Reading and writing of mesh files on one core, beside the libraries for each format and those for Python.
 //!
-//! What is on top of it: keeping the order of the file, welding, range checks, triangulation and materials.
+//! What reading does beyond the libraries: seams are welded, indices and coordinates checked, everything is in double precision,
+//! and attributes go to corners.
 
-#![expect(clippy::print_stdout, reason = "benchmarks print their results")]
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "benchmarks print their results, and who is missing")]
 
-use std::io::Cursor;
+use std::fs::{self, File};
+use std::io::{BufWriter, Cursor};
+use std::path::{Path, PathBuf};
 
-use isochore_bench::{interleaved_medians, print_row};
+use isochore_bench::{Comparison, PythonPeer, cpu_seconds, median, on_one_core, scratch};
 use isochore_mesh::io::{self, Format};
 use isochore_mesh::{TriMesh, primitives};
+use serde_json::json;
+
+/// Rounds after one that warms up.
+const ROUNDS: usize = 7;
+
+/// The formats that are compared, with the ending of their files.
+const FORMATS: [(Format, &str); 4] =
+    [(Format::Obj, "obj"), (Format::Glb, "glb"), (Format::Ply, "ply"), (Format::Stl, "stl")];
+
+/// Libraries for Python: the beginning of their jobs' names, and how they are called.
+const PEERS: [(&str, &str); 4] = [
+    ("meshlib", "MeshLib 3.1.4"),
+    ("open3d", "Open3D 0.20.0"),
+    ("pymeshlab", "PyMeshLab 2025.7.post1"),
+    ("trimesh", "trimesh 5.2.0"),
+];
 
 fn main() {
-    let mut mesh = primitives::icosphere(1.0, 7);
-    println!(
-        "icosphere of {} triangles, from and to memory; ratios are to the first of each group",
-        mesh.triangles.len()
-    );
-    compare_formats(&mesh);
-    let normals = mesh.vertex_normals();
-    mesh.corner.normals = mesh.triangles.iter().map(|t| t.map(|vertex| normals[vertex as usize])).collect();
-    println!("the same with normals");
-    compare_formats(&mesh);
+    on_one_core(|| {
+        let mut mesh = primitives::icosphere(1.0, 7);
+        compare_formats(&mesh, "");
+        let begin = cpu_seconds();
+        let welded = mesh.clone().welded();
+        let milliseconds = 1e3 * (cpu_seconds() - begin);
+        println!("welding {} vertices takes {milliseconds:.1} ms, the copy included", welded.positions.len());
+        let normals = mesh.vertex_normals();
+        mesh.corner.normals = mesh.triangles.iter().map(|t| t.map(|vertex| normals[vertex as usize])).collect();
+        compare_formats(&mesh, ", with normals");
+    });
 }
 
-/// Something to be timed. It returns a number that depends on its work, so that none of it can be left out.
-type Contender<'a> = (&'a str, &'a mut dyn FnMut() -> f64);
+/// A peer's job in one round, in seconds of work; none where the peer cannot do it.
+type Job<'a> = Box<dyn FnMut() -> Option<f64> + 'a>;
 
-fn compare<const N: usize>(group: &str, mut contenders: [Contender<'_>; N]) {
-    let names = contenders.each_ref().map(|(name, _)| *name);
-    let mut jobs = contenders.each_mut().map(|(_, run)| {
-        || {
-            std::hint::black_box(run());
+fn compare_formats(mesh: &TriMesh, with: &str) {
+    let mut python = PythonPeer::start("files", &[]);
+    if let Err(error) = &python {
+        eprintln!("peers in Python are missing: {error}");
+    }
+    Comparison::print_heading();
+    for (format, ending) in FORMATS {
+        let path = scratch().join("io").with_extension(ending);
+        let write = |path: &Path| {
+            let file = File::create(path).expect("the scratch folder can be written");
+            let mut file = BufWriter::with_capacity(1 << 20, file);
+            io::write_to(format, mesh, &mut file).expect("the mesh is sound");
+        };
+        write(&path);
+        let row = |job: String, peer: &str, measured: Option<[f64; 2]>| {
+            let Some([ours, theirs]) = measured else { return };
+            let scale = 1e9 / mesh.triangles.len() as f64;
+            let (ours, theirs) = (scale * ours, scale * theirs);
+            let job = format!("{job} of {} triangles{with}", mesh.triangles.len());
+            let unit = "ns a triangle".into();
+            Comparison { job, peer: peer.into(), unit, ours, theirs, accuracy: String::new() }.report();
+        };
+        let read_job = format!("reading {}", ending.to_uppercase());
+        let mut read_ours = || timed(|| std::hint::black_box(io::read(&path).expect("a mesh")).triangles.len());
+        if let Some((peer, library)) = library_of(format) {
+            let mut theirs: Job<'_> = Box::new(|| Some(timed(|| library(&path))));
+            row(read_job.clone(), peer, interleaved(&mut read_ours, &mut theirs));
         }
-    });
-    let medians = interleaved_medians(&mut jobs.each_mut().map(|job| job as &mut dyn FnMut()));
-    for (name, median) in names.iter().zip(&medians) {
-        print_row([group, name, &format!("{:.2} ms", 1e3 * median), &format!("x {:.2}", median / medians[0])]);
+        let Ok(python) = &mut python else { continue };
+        for (name, peer) in PEERS {
+            let mut ask =
+                |job: &str, path: &PathBuf| python.seconds(&json!({ "job": format!("{name}_{job}"), "path": path }));
+            let mut theirs: Job<'_> = Box::new(|| ask("read", &path).ok());
+            let measured = interleaved(&mut read_ours, &mut theirs);
+            drop(theirs);
+            row(read_job.clone(), peer, measured);
+            if measured.is_some() && with.is_empty() {
+                let copy = scratch().join("io-copy").with_extension(ending);
+                let mut theirs: Job<'_> = Box::new(|| ask("write", &copy).ok());
+                let measured = interleaved(&mut || timed(|| write(&path)), &mut theirs);
+                row(format!("writing {}", ending.to_uppercase()), peer, measured);
+            }
+        }
     }
 }
 
-fn compare_formats(mesh: &TriMesh) {
-    let written = |format: Format| {
-        let mut bytes = Vec::new();
-        io::write_to(format, mesh, &mut bytes).expect("the mesh is sound");
-        bytes
-    };
-    let ours = |format: Format, bytes: &[u8]| {
-        io::read_bytes(format, bytes).expect("what was written can be read").positions[0].x
-    };
-    let [obj, glb, stl, ply] = [Format::Obj, Format::Glb, Format::Stl, Format::Ply].map(written);
-    compare("read OBJ", [("tobj alone", &mut || read_with_tobj(&obj)), ("isochore", &mut || ours(Format::Obj, &obj))]);
-    compare(
-        "read GLB",
-        [("gltf, unwelded", &mut || read_with_gltf(&glb)), ("isochore", &mut || ours(Format::Glb, &glb))],
-    );
-    compare(
-        "read STL",
-        [("stl_io alone", &mut || read_with_stl_io(&stl)), ("isochore", &mut || ours(Format::Stl, &stl))],
-    );
-    compare("read PLY", [("isochore", &mut || ours(Format::Ply, &ply))]);
-    compare(
-        "write",
-        [
-            ("OBJ", &mut || written(Format::Obj).len() as f64),
-            ("GLB", &mut || written(Format::Glb).len() as f64),
-            ("STL", &mut || written(Format::Stl).len() as f64),
-            ("PLY", &mut || written(Format::Ply).len() as f64),
-        ],
-    );
-    compare(
-        "measure",
-        [
-            ("volume", &mut || mesh.volume()),
-            ("check", &mut || mesh.check().boundary_edges.len() as f64),
-            ("components", &mut || mesh.components().count as f64),
-        ],
-    );
+/// Median seconds of both, run in turn; none where the peer cannot do it.
+fn interleaved(ours: &mut dyn FnMut() -> f64, theirs: &mut Job<'_>) -> Option<[f64; 2]> {
+    let mut seconds = [Vec::new(), Vec::new()];
+    for round in 0..=ROUNDS {
+        let pair = [ours(), theirs()?];
+        if round > 0 {
+            seconds.iter_mut().zip(pair).for_each(|(seconds, new)| seconds.push(new));
+        }
+    }
+    Some(seconds.map(|mut seconds| median(&mut seconds)))
 }
 
-fn read_with_tobj(obj: &[u8]) -> f64 {
-    let no_materials = |_: &std::path::Path| Ok(Default::default());
-    let read = tobj::load_obj_buf(&mut Cursor::new(obj), &tobj::LoadOptions::default(), no_materials);
+fn timed<T>(work: impl FnOnce() -> T) -> f64 {
+    let begin = cpu_seconds();
+    std::hint::black_box(work());
+    cpu_seconds() - begin
+}
+
+/// Reads a file and returns a number that depends on it.
+type Reader = fn(&Path) -> f64;
+
+/// The library for Rust that reads a format, each in its own manner: no welding, no checks.
+fn library_of(format: Format) -> Option<(&'static str, Reader)> {
+    match format {
+        Format::Obj => Some(("tobj 4.0.5", read_with_tobj)),
+        Format::Glb => Some(("gltf 1.4, unwelded, f32", read_with_gltf)),
+        Format::Stl => Some(("stl_io 0.11", read_with_stl_io)),
+        _ => None,
+    }
+}
+
+fn bytes(path: &Path) -> Vec<u8> {
+    fs::read(path).expect("the file was written")
+}
+
+fn read_with_tobj(path: &Path) -> f64 {
+    let no_materials = |_: &Path| Ok(Default::default());
+    let read = tobj::load_obj_buf(&mut Cursor::new(bytes(path)), &tobj::LoadOptions::default(), no_materials);
     read.expect("the file is sound").0[0].mesh.positions[0]
 }
 
-fn read_with_stl_io(stl: &[u8]) -> f64 {
-    let read = stl_io::read_stl(&mut Cursor::new(stl)).expect("the file is sound");
+fn read_with_stl_io(path: &Path) -> f64 {
+    let read = stl_io::read_stl(&mut Cursor::new(bytes(path))).expect("the file is sound");
     f64::from(read.vertices[0].0[0])
 }
 
-fn read_with_gltf(glb: &[u8]) -> f64 {
-    let document = gltf::Gltf::from_slice(glb).expect("the file is sound");
+fn read_with_gltf(path: &Path) -> f64 {
+    let document = gltf::Gltf::from_slice(&bytes(path)).expect("the file is sound");
     let mut sum = 0.0;
     for primitive in document.meshes().flat_map(|mesh| mesh.primitives()) {
         let reader = primitive.reader(|_| document.blob.as_deref());

@@ -12,6 +12,7 @@ mod gallery;
 mod oracle;
 mod python;
 mod shell;
+mod size;
 mod test;
 
 use std::process::ExitCode;

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use glam::{DVec3, Vec3};
 
-use super::text::{at_line, numbered_lines, read_numbers};
+use super::text::{FLUSH_AT, at_line, flush, numbered_lines, read_numbers};
 use super::{LineProblem, ParseError};
 use crate::TriMesh;
 use crate::measure::triangle_normal;
@@ -90,6 +90,7 @@ pub(super) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
     header[..8].copy_from_slice(b"isochore");
     writer.write_all(&header)?;
     writer.write_all(&(mesh.triangles.len() as u32).to_le_bytes())?;
+    let mut records = Vec::with_capacity(FLUSH_AT + RECORD);
     for triangle in &mesh.triangles {
         let corners = triangle.map(|vertex| mesh.positions[vertex as usize].as_vec3());
         let normal = triangle_normal(corners.map(|corner| corner.as_dvec3())).as_vec3();
@@ -99,7 +100,8 @@ pub(super) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
                 bytes.copy_from_slice(&coordinate.to_le_bytes());
             }
         }
-        writer.write_all(&record)?;
+        records.extend_from_slice(&record);
+        flush(&mut records, writer, FLUSH_AT)?;
     }
-    Ok(())
+    flush(&mut records, writer, 0)
 }

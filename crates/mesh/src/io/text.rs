@@ -116,7 +116,17 @@ pub(super) fn at_line(line: usize) -> impl Fn(LineProblem) -> ParseError {
 }
 
 /// Bytes gathered before they go to the writer.
-const FLUSH_AT: usize = 1 << 16;
+pub(super) const FLUSH_AT: usize = 1 << 16;
+
+/// Hands `bytes` to the writer once there are `most` of them.
+#[inline]
+pub(super) fn flush(bytes: &mut Vec<u8>, writer: &mut dyn Write, most: usize) -> io::Result<()> {
+    if bytes.len() >= most {
+        writer.write_all(bytes)?;
+        bytes.clear();
+    }
+    Ok(())
+}
 
 /// Lines of words on their way to a writer.
 pub(super) struct LineWriter<'a> {
@@ -164,12 +174,7 @@ impl<'a> LineWriter<'a> {
 
     pub(super) fn end_line(&mut self) -> io::Result<()> {
         self.buffer.push(b'\n');
-        if self.buffer.len() < FLUSH_AT {
-            return Ok(());
-        }
-        self.writer.write_all(&self.buffer)?;
-        self.buffer.clear();
-        Ok(())
+        flush(&mut self.buffer, self.writer, FLUSH_AT)
     }
 
     pub(super) fn finish(self) -> io::Result<()> {

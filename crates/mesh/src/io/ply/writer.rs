@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use glam::DVec4;
 
 use crate::TriMesh;
+use crate::io::text::{FLUSH_AT, flush};
 
 /// Writes binary little-endian PLY with doubles. Colors are bytes where bytes say the same, else floats.
 ///
@@ -47,40 +48,38 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
     header.push_str("end_header\n");
     writer.write_all(header.as_bytes())?;
 
-    let mut record = Vec::new();
+    let mut records = Vec::with_capacity(FLUSH_AT + 1024);
     for (vertex, position) in mesh.positions.iter().enumerate() {
-        record.clear();
-        push_doubles(&mut record, position.to_array());
+        push_doubles(&mut records, position.to_array());
         if let Some(normals) = &vertex_normals {
-            push_doubles(&mut record, normals[vertex].to_array());
+            push_doubles(&mut records, normals[vertex].to_array());
         }
         if let Some(uvs) = &vertex_uvs {
-            push_doubles(&mut record, uvs[vertex].to_array());
+            push_doubles(&mut records, uvs[vertex].to_array());
         }
         if let Some(&color) = mesh.vertex.colors.get(vertex) {
-            vertex_color_depth.push(&mut record, color);
+            vertex_color_depth.push(&mut records, color);
         }
-        writer.write_all(&record)?;
+        flush(&mut records, writer, FLUSH_AT)?;
     }
     for (triangle, vertices) in mesh.triangles.iter().enumerate() {
-        record.clear();
-        record.push(3);
-        vertices.iter().for_each(|vertex| record.extend_from_slice(&vertex.to_le_bytes()));
+        records.push(3);
+        vertices.iter().for_each(|vertex| records.extend_from_slice(&vertex.to_le_bytes()));
         if has_uv_lists {
-            record.push(6);
-            uvs[triangle].iter().for_each(|uv| push_doubles(&mut record, uv.to_array()));
+            records.push(6);
+            uvs[triangle].iter().for_each(|uv| push_doubles(&mut records, uv.to_array()));
         }
         if has_normal_lists {
-            record.push(9);
-            normals[triangle].iter().for_each(|normal| push_doubles(&mut record, normal.to_array()));
+            records.push(9);
+            normals[triangle].iter().for_each(|normal| push_doubles(&mut records, normal.to_array()));
         }
         if let Some(colors) = corner_colors.get(triangle) {
-            record.push(12);
-            colors.iter().for_each(|&color| corner_color_depth.push(&mut record, color));
+            records.push(12);
+            colors.iter().for_each(|&color| corner_color_depth.push(&mut records, color));
         }
-        writer.write_all(&record)?;
+        flush(&mut records, writer, FLUSH_AT)?;
     }
-    Ok(())
+    flush(&mut records, writer, 0)
 }
 
 /// Values by vertex where all corners at each vertex agree; none where there are no values.
@@ -99,8 +98,8 @@ fn by_vertex<T: Copy + Default + PartialEq>(mesh: &TriMesh, corners: &[[T; 3]]) 
     Some(values.into_iter().map(Option::unwrap_or_default).collect())
 }
 
-fn push_doubles(record: &mut Vec<u8>, numbers: impl IntoIterator<Item = f64>) {
-    numbers.into_iter().for_each(|number| record.extend_from_slice(&number.to_le_bytes()));
+fn push_doubles(records: &mut Vec<u8>, numbers: impl IntoIterator<Item = f64>) {
+    numbers.into_iter().for_each(|number| records.extend_from_slice(&number.to_le_bytes()));
 }
 
 /// How colors are written.
@@ -134,12 +133,12 @@ impl Depth {
         }
     }
 
-    fn push(self, record: &mut Vec<u8>, color: DVec4) {
+    fn push(self, records: &mut Vec<u8>, color: DVec4) {
         for value in color.to_array() {
             match self {
-                Self::Byte => record.push(byte(value)),
-                Self::Float => record.extend_from_slice(&(value as f32).to_le_bytes()),
-                Self::Double => record.extend_from_slice(&value.to_le_bytes()),
+                Self::Byte => records.push(byte(value)),
+                Self::Float => records.extend_from_slice(&(value as f32).to_le_bytes()),
+                Self::Double => records.extend_from_slice(&value.to_le_bytes()),
             }
         }
     }
