@@ -3,6 +3,7 @@
 mod attributes;
 mod normals;
 mod resampled;
+mod split;
 mod subdivided;
 mod transformed;
 mod welded;
@@ -11,6 +12,7 @@ use glam::DVec3;
 
 pub use attributes::{CornerAttributes, VertexAttributes};
 pub use resampled::{Origin, Resampling, VertexOrigin};
+pub use split::SplitError;
 pub use subdivided::{SubTriangle, Subdivision};
 
 use crate::Assets;
