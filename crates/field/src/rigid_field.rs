@@ -93,11 +93,11 @@ fn relative_velocity(
     distance: &DistanceBlock,
     out: &mut VelocityBlock,
 ) {
-    let support = tool.support();
+    let (support, inverse) = (tool.support(), 1.0 / tool.support());
     let profile = tool.profile().evaluate_block(&distance.value, support);
     for lane in 0..LANES {
         let (potential, curl) = motion.potential(points.get(lane));
-        let gradient = profile.slope[lane] / support * distance.gradient.get(lane);
+        let gradient = profile.slope[lane] * inverse * distance.gradient.get(lane);
         // V − (v + ω×r) = (g − 1)(v + ω×r) + (g′/R) n × A
         out.relative.set(lane, curl_of_product(profile.value[lane] - 1.0, gradient, potential, curl));
     }
@@ -121,7 +121,7 @@ impl RigidMotion {
     pub(crate) fn potential(&self, point: DVec3) -> (DVec3, DVec3) {
         let r = point - self.center;
         let turn = self.angular.cross(r);
-        ((0.5 * self.linear + turn / 3.0).cross(r), self.linear + turn)
+        ((0.5 * self.linear + turn * (1.0 / 3.0)).cross(r), self.linear + turn)
     }
 
     /// The same motion, described about another center.

@@ -3,24 +3,42 @@
 use isochore_mesh::{LANES, PointBlock};
 use multiversion::multiversion;
 
-/// `points` after one step of length `time` along a field.
+/// Points on their way through a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rk4Block<S> {
+    pub(crate) start: PointBlock,
+    /// What the field is at the four places where it is asked. The first is `start`, and must be filled in.
+    pub(crate) stages: [S; 4],
+    /// Where the points are after the step.
+    pub(crate) end: PointBlock,
+}
+
+impl<S: Copy> Rk4Block<S> {
+    /// At the origin, with this for the field.
+    pub(crate) fn new(stage: S) -> Self {
+        Self { start: PointBlock::ZERO, stages: [stage; 4], end: PointBlock::ZERO }
+    }
+}
+
+/// Takes one step of length `time`.
 ///
-/// `stages` are what the field is at the four places where it is asked, of which `velocity` is what counts here. The first, at
-/// `points`, must be filled in; `evaluate` fills in the others.
+/// `velocity` is what counts here of a stage. `evaluate` gets the number of a stage, from 1 to 3, and places, and fills the stage in.
+/// The blocks go abreast, so that the processor has something to do while the results of one are on their way.
 pub(crate) fn rk4_step<S>(
-    points: &PointBlock,
-    stages: &mut [S; 4],
+    blocks: &mut [Rk4Block<S>],
     time: f64,
     velocity: impl Fn(&S) -> &PointBlock,
-    mut evaluate: impl FnMut(&PointBlock, &mut S),
-) -> PointBlock {
-    let mut place = PointBlock::ZERO;
+    evaluate: impl Fn(usize, &PointBlock, &mut S),
+) {
     for (stage, share) in [(1, 0.5 * time), (2, 0.5 * time), (3, time)] {
-        advance(points, velocity(&stages[stage - 1]), share, &mut place);
-        evaluate(&place, &mut stages[stage]);
+        for Rk4Block { start, stages, end } in &mut *blocks {
+            advance(start, velocity(&stages[stage - 1]), share, end);
+            evaluate(stage, end, &mut stages[stage]);
+        }
     }
-    combine(points, stages.each_ref().map(velocity), time, &mut place);
-    place
+    for Rk4Block { start, stages, end } in blocks {
+        combine(start, stages.each_ref().map(&velocity), time, end);
+    }
 }
 
 /// Where `points` are after moving straight on for `time`.
@@ -60,9 +78,11 @@ mod tests {
     }
 
     fn runge_kutta(point: DVec3, time: f64) -> DVec3 {
-        let mut stages = [PointBlock::splat(bend(point)); 4];
-        let evaluate = |points: &PointBlock, out: &mut PointBlock| *out = PointBlock::splat(bend(points.get(0)));
-        rk4_step(&PointBlock::splat(point), &mut stages, time, |velocity| velocity, evaluate).get(0)
+        let mut block = Rk4Block::new(PointBlock::splat(bend(point)));
+        block.start = PointBlock::splat(point);
+        let evaluate = |_, points: &PointBlock, out: &mut PointBlock| *out = PointBlock::splat(bend(points.get(0)));
+        rk4_step(std::slice::from_mut(&mut block), time, |velocity| velocity, evaluate);
+        block.end.get(0)
     }
 
     fn euler(point: DVec3, time: f64) -> DVec3 {

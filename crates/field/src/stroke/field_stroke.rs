@@ -19,7 +19,7 @@ use crate::{
     masked_field::MaskedField,
     mirrored_field::MirroredField,
     pose::Placement,
-    rk4::rk4_step,
+    rk4::{Rk4Block, rk4_step},
 };
 
 /// Fields that act one after the other, each over its own time.
@@ -180,27 +180,23 @@ impl Leg {
     /// Takes the points named in `block`, which stand where they are at the beginning of `step`, to its end.
     fn step_block(&self, step: usize, block: &[u32], points: &mut [DVec3], wake: &mut [usize]) -> u64 {
         let [begin, middle, end] = [0, 1, 2].map(|half| &*self.instants[2 * step + half]);
-        let start = PointBlock::gather(&block.iter().map(|&index| points[index as usize]).collect::<Vec<_>>());
-        let mut stages = [FieldBlock::ZERO; 4];
-        begin.evaluate_into(&start, &mut stages[0]);
+        let mut carried = Rk4Block::new(FieldBlock::ZERO);
+        carried.start = PointBlock::gather(&block.iter().map(|&index| points[index as usize]).collect::<Vec<_>>());
+        begin.evaluate_into(&carried.start, &mut carried.stages[0]);
         let sleep: [usize; LANES] =
-            std::array::from_fn(|lane| self.resting_steps(stages[0].clearance[lane], start.get(lane)));
+            std::array::from_fn(|lane| self.resting_steps(carried.stages[0].clearance[lane], carried.start.get(lane)));
         if sleep[..block.len()].iter().all(|&steps| steps > 0) {
             block.iter().zip(sleep).for_each(|(&index, sleep)| wake[index as usize] = step + sleep);
             return block.len() as u64;
         }
-        let mut fields = [middle, middle, end].into_iter();
-        let arrived = rk4_step(
-            &start,
-            &mut stages,
+        let fields = [begin, middle, middle, end];
+        rk4_step(
+            std::slice::from_mut(&mut carried),
             self.step_time,
             |stage| &stage.velocity,
-            |points, stage| {
-                if let Some(field) = fields.next() {
-                    field.evaluate_into(points, stage);
-                }
-            },
+            |stage, points, out| fields[stage].evaluate_into(points, out),
         );
+        let Rk4Block { start, stages, end: arrived } = &carried;
         let is_still = |lane: usize| stages.iter().all(|stage| stage.clearance[lane] > 0.0);
         let core = |lane: usize| {
             let core = stages[0].core[lane];

@@ -12,8 +12,10 @@ use isochore_mesh::{Aabb, LANES, PointBlock};
 
 use super::StrokeError;
 use crate::{
-    BodyTwist, MovingField, MovingTool, Pose, RigidField, Tool, pose::Placement, rigid_field::VelocityBlock,
-    rk4::rk4_step,
+    BodyTwist, MovingField, MovingTool, Pose, RigidField, Tool,
+    pose::Placement,
+    rigid_field::VelocityBlock,
+    rk4::{Rk4Block, rk4_step},
 };
 
 /// Steps between two keys at most: more is a mistake in the recipe, and the table of poses must fit in memory.
@@ -22,6 +24,13 @@ pub(super) const MAX_STEPS: usize = 1_000_000;
 /// Clearance that is given away to rounding when a point goes to sleep, as a share of the coordinates at hand.
 /// Larger wakes points needlessly early; smaller than some units of f64 rounding could let a sleeping point miss the support.
 pub(super) const SLEEP_SLACK: f64 = 1e-12;
+
+/// Blocks that take a step side by side. With one, each stage waits for the last digits of the one before; more than enough to
+/// fill that time only fill the cache.
+const ABREAST: usize = 2;
+
+/// Steps to rest for each lane.
+type Sleep = [usize; LANES];
 
 /// A tool's way through a list of poses.
 #[derive(Debug, Clone)]
@@ -166,97 +175,125 @@ impl Segment {
     }
 
     fn advance(&self, tool: &Tool, travelers: &mut Travelers<'_>) -> u64 {
-        let (center, radius) = travelers.ball();
-        if !self.may_touch(tool, center, radius) {
-            return 0;
-        }
-        let field = RigidField::new(tool, self.twist);
         let bounds = tool.support_bounds();
-        let mut evaluations = 0;
-        travelers.wake.fill(0);
-        let mut stages = [VelocityBlock::REST; 4];
+        let mut resting =
+            travelers.near(|center, radius| self.comes_near(center, radius, |local| bounds.distance(local)));
         let mut due = Vec::new();
-        for step in 0..self.steps() {
-            due.clear();
-            for index in 0..travelers.world.len() {
-                match travelers.state[index] {
-                    State::Moving => due.push(index as u32),
-                    State::Resting if travelers.wake[index] <= step => {
-                        let local = self.placements[step].to_local(travelers.world[index]);
-                        let sleep = self.resting_steps(bounds.distance(local), local, 0.0);
-                        if sleep > 0 {
-                            travelers.wake[index] = step + sleep;
-                        } else {
-                            travelers.local[index] = local;
-                            due.push(index as u32);
-                        }
-                    }
-                    State::Resting | State::Carried => {}
+        let field = RigidField::new(tool, self.twist);
+        let mut blocks = [Rk4Block::new(VelocityBlock::REST); ABREAST];
+        let mut evaluations = 0;
+        for (step, placement) in self.placements[..self.steps()].iter().enumerate() {
+            resting.retain(|&index| {
+                let traveler = index as usize;
+                if travelers.wake[traveler] > step {
+                    return true;
                 }
+                let local = placement.to_local(travelers.world[traveler]);
+                let sleep = self.resting_steps(bounds.distance(local), local, 0.0);
+                if sleep > 0 {
+                    travelers.wake[traveler] = step + sleep;
+                } else {
+                    travelers.local[traveler] = local;
+                    due.push(index);
+                }
+                sleep > 0
+            });
+            travelers.have_stopped = false;
+            for due in due.chunks(ABREAST * LANES) {
+                evaluations += self.step_blocks(&field, step, due, travelers, &mut blocks);
             }
-            for block in due.chunks(LANES) {
-                evaluations += self.step_block(&field, step, block, travelers, &mut stages);
+            if travelers.have_stopped {
+                due.retain(|&index| match travelers.state[index as usize] {
+                    State::Moving => true,
+                    State::Carried => false,
+                    State::Resting => {
+                        resting.push(index);
+                        false
+                    }
+                });
             }
         }
         travelers.arrive(&self.placements[self.steps()]);
         evaluations
     }
 
-    /// Takes the travelers named in `block`, whose local positions are those at the beginning of `step`, to its end. `stages` are
+    /// Takes the travelers named in `due`, whose local positions are those at the beginning of `step`, to its end. `blocks` are
     /// scratch.
-    fn step_block(
+    fn step_blocks(
         &self,
         field: &RigidField<'_>,
         step: usize,
-        block: &[u32],
+        due: &[u32],
         travelers: &mut Travelers<'_>,
-        stages: &mut [VelocityBlock; 4],
+        blocks: &mut [Rk4Block<VelocityBlock>; ABREAST],
     ) -> u64 {
-        let mut start = PointBlock::ZERO;
-        for lane in 0..LANES {
-            // Lanes beyond the block repeat its last point, and nobody reads them.
-            start.set(lane, travelers.local[block[lane.min(block.len() - 1)] as usize]);
+        let mut evaluations = 0;
+        let mut moving: [(&[u32], Sleep); ABREAST] = [(&[], [0; LANES]); ABREAST];
+        let mut count = 0;
+        for members in due.chunks(LANES) {
+            let Rk4Block { start, stages: [first, ..], .. } = &mut blocks[count];
+            for lane in 0..LANES {
+                // Lanes beyond the members repeat the last one, and nobody reads them.
+                start.set(lane, travelers.local[members[lane.min(members.len() - 1)] as usize]);
+            }
+            field.evaluate_into(start, first);
+            evaluations += members.len() as u64;
+            if let Some(sleep) = self.sleep(field.tool(), step, members, start, first, travelers) {
+                moving[count] = (members, sleep);
+                count += 1;
+            }
         }
-        field.evaluate_into(&start, &mut stages[0]);
-        let tool = field.tool();
-        let (mut sleep, mut is_going_on) = ([0; LANES], false);
-        for (lane, &index) in block.iter().enumerate() {
-            let first = &stages[0];
-            if !first.is_outside[lane] {
-                // Where the field does not leave the tool behind, all stages are the first, in this step and in all that follow.
-                if first.relative.get(lane) == DVec3::ZERO {
-                    travelers.state[index as usize] = State::Carried;
-                } else {
-                    is_going_on = true;
+
+        let blocks = &mut blocks[..count];
+        rk4_step(blocks, self.step_time(), |stage| &stage.relative, |_, points, out| field.evaluate_into(points, out));
+        for (Rk4Block { stages, end, .. }, (members, sleep)) in blocks.iter().zip(moving) {
+            evaluations += 3 * members.len() as u64;
+            for (lane, &index) in members.iter().enumerate() {
+                let index = index as usize;
+                if stages.iter().all(|stage| stage.is_outside[lane]) {
+                    travelers.rest(index, &self.placements[step], step + sleep[lane].max(1));
+                } else if travelers.state[index] != State::Carried {
+                    travelers.local[index] = end.get(lane);
+                    travelers.state[index] = State::Moving;
                 }
-            } else {
+            }
+        }
+        evaluations
+    }
+
+    /// The number of steps through which each of the members is certain to rest, as seen from where they `start`; none, and all
+    /// is done, if each of them rests or goes with the tool.
+    fn sleep(
+        &self,
+        tool: &Tool,
+        step: usize,
+        members: &[u32],
+        start: &PointBlock,
+        first: &VelocityBlock,
+        travelers: &mut Travelers<'_>,
+    ) -> Option<Sleep> {
+        let (mut sleep, mut is_moving) = ([0; LANES], false);
+        for (lane, &index) in members.iter().enumerate() {
+            if first.is_outside[lane] {
                 if first.distance[lane].is_finite() {
                     let clearance = (first.distance[lane] - tool.support()) / tool.distance().lipschitz();
                     sleep[lane] = self.resting_steps(clearance, start.get(lane), 0.0);
                 }
-                is_going_on |= sleep[lane] == 0;
+                is_moving |= sleep[lane] == 0;
+            } else if first.relative.get(lane) == DVec3::ZERO {
+                // All stages are where the first is, in this step and in all that follow.
+                travelers.carry(index as usize);
+            } else {
+                is_moving = true;
             }
         }
-        if !is_going_on {
-            for (lane, &index) in block.iter().enumerate() {
-                if sleep[lane] > 0 {
-                    travelers.rest(index as usize, &self.placements[step], step + sleep[lane]);
-                }
-            }
-            return block.len() as u64;
+        if is_moving {
+            return Some(sleep);
         }
-        let evaluate = |points: &PointBlock, stage: &mut VelocityBlock| field.evaluate_into(points, stage);
-        let end = rk4_step(&start, stages, self.step_time(), |stage| &stage.relative, evaluate);
-        for (lane, &index) in block.iter().enumerate() {
-            let index = index as usize;
-            if stages.iter().all(|stage| stage.is_outside[lane]) {
-                travelers.rest(index, &self.placements[step], step + sleep[lane].max(1));
-            } else if travelers.state[index] != State::Carried {
-                travelers.local[index] = end.get(lane);
-                travelers.state[index] = State::Moving;
-            }
+        for (&index, sleep) in members.iter().zip(sleep).filter(|&(_, sleep)| sleep > 0) {
+            travelers.rest(index as usize, &self.placements[step], step + sleep);
         }
-        4 * block.len() as u64
+        None
     }
 
     /// Number of steps through which a point at rest, or a ball of this radius about it, now at `local` and at least `clearance` away from the support, is certain
@@ -265,6 +302,9 @@ impl Segment {
     /// In the world the support comes closer by at most speed × time. The stages follow the point's circle in tool
     /// coordinates along tangents: off by less than (step time)² |ω| |v + ω×y|, where |v + ω×y| does not change along the way.
     fn resting_steps(&self, clearance: f64, local: DVec3, radius: f64) -> usize {
+        if clearance <= 0.0 {
+            return 0;
+        }
         let time = self.step_time();
         let own_speed = self.own_speed(local, radius);
         let stage_error = time * time * self.twist.angular.length() * own_speed;
@@ -295,21 +335,25 @@ impl Segment {
     }
 
     fn may_touch(&self, tool: &Tool, center: DVec3, radius: f64) -> bool {
-        if self.speed == 0.0 {
-            return false;
-        }
         let bounds = tool.support_bounds();
-        let mut step = 0;
-        while step < self.steps() {
-            let local = self.placements[step].to_local(center);
-            let mut clearance = bounds.distance(local) - radius;
-            if clearance <= 0.0 {
-                let (distance, _) = tool.distance().sample(local);
-                if distance.is_finite() {
-                    clearance = (distance - tool.support()) / tool.distance().lipschitz() - radius;
-                }
+        self.comes_near(center, radius, |local| {
+            let clearance = bounds.distance(local);
+            let (distance, _) = tool.distance().sample(local);
+            if clearance > radius || distance.is_infinite() {
+                clearance
+            } else {
+                (distance - tool.support()) / tool.distance().lipschitz()
             }
-            match self.resting_steps(clearance, local, radius) {
+        })
+    }
+
+    /// Whether what rests in a ball may have to move, judged by lower bounds on the distance from the support to a point in tool
+    /// coordinates; false is certain.
+    fn comes_near(&self, center: DVec3, radius: f64, clearance: impl Fn(DVec3) -> f64) -> bool {
+        let mut step = 0;
+        while step < self.steps() && self.speed > 0.0 {
+            let local = self.placements[step].to_local(center);
+            match self.resting_steps(clearance(local) - radius, local, radius) {
                 0 => return true,
                 sleep => step += sleep,
             }
@@ -325,6 +369,8 @@ struct Travelers<'a> {
     state: Vec<State>,
     /// First step at which a resting point must be looked at again.
     wake: Vec<usize>,
+    /// Whether one that moved, or was about to, no longer does.
+    have_stopped: bool,
 }
 
 /// What a traveler does.
@@ -341,13 +387,29 @@ enum State {
 impl<'a> Travelers<'a> {
     fn new(world: &'a mut [DVec3]) -> Self {
         let count = world.len();
-        Self { world, local: vec![DVec3::ZERO; count], state: vec![State::Resting; count], wake: vec![0; count] }
+        Self {
+            world,
+            local: vec![DVec3::ZERO; count],
+            state: vec![State::Resting; count],
+            wake: vec![0; count],
+            have_stopped: false,
+        }
     }
 
-    /// A ball that holds all where they are in the world.
-    fn ball(&self) -> (DVec3, f64) {
-        let bounds = Aabb::of(self.world.iter().copied());
-        (bounds.center(), 0.5 * bounds.size().length())
+    /// Those in whose neighborhood, a ball by center and radius, something may happen.
+    fn near(&mut self, may_touch: impl Fn(DVec3, f64) -> bool) -> Vec<u32> {
+        self.wake.fill(0);
+        let may_touch_all = |points: &[DVec3]| {
+            let bounds = Aabb::of(points.iter().copied());
+            may_touch(bounds.center(), 0.5 * bounds.size().length())
+        };
+        let mut near = Vec::new();
+        if may_touch_all(self.world) {
+            for (block, points) in self.world.chunks(LANES).enumerate().filter(|(_, points)| may_touch_all(points)) {
+                near.extend((0..points.len()).map(|lane| (block * LANES + lane) as u32));
+            }
+        }
+        near
     }
 
     /// Lets a point rest where it is at the beginning of the step with this placement.
@@ -357,6 +419,13 @@ impl<'a> Travelers<'a> {
             self.state[index] = State::Resting;
         }
         self.wake[index] = wake;
+        self.have_stopped = true;
+    }
+
+    /// Lets a point stand still in tool coordinates.
+    fn carry(&mut self, index: usize) {
+        self.state[index] = State::Carried;
+        self.have_stopped = true;
     }
 
     /// Lets all rest that come with the tool, whose way ends with this placement.

@@ -11,12 +11,13 @@ use super::Grid;
 use super::lipschitz::lipschitz;
 use super::spline::coefficients;
 use crate::{DistanceBlock, PointBlock};
-use kernel::Lattice;
+use kernel::{Frame, Lattice};
 
 /// The cubic spline through the samples of a grid.
 #[derive(Debug, Clone)]
 pub(super) struct Interpolant {
-    grid: Grid,
+    /// None where no cell has all its neighbors.
+    frame: Option<Frame>,
     coefficients: Vec<f32>,
     lipschitz: f64,
     /// No two coefficients of a stencil differ by more.
@@ -35,7 +36,7 @@ impl Interpolant {
         let coefficients = coefficients(samples, grid.dims);
         let lipschitz = lipschitz(grid, &coefficients);
         let spread = f64::from(largest_difference(&coefficients, grid.dims)) * STENCIL_STEPS;
-        Self { grid: *grid, coefficients, lipschitz, spread }
+        Self { frame: Frame::new(grid), coefficients, lipschitz, spread }
     }
 
     pub(super) fn lipschitz(&self) -> f64 {
@@ -63,17 +64,9 @@ impl Interpolant {
         }
     }
 
-    /// None where no cell has all its neighbors.
     #[inline]
     fn lattice(&self) -> Option<Lattice<'_>> {
-        let Grid { origin, cell, dims } = self.grid;
-        // Grids have no more nodes than a `u32` can tell.
-        dims.iter().all(|&nodes| nodes >= 4).then(|| Lattice {
-            origin: origin.to_array(),
-            cells_per_length: 1.0 / cell,
-            dims: dims.map(|nodes| nodes as u32),
-            coefficients: &self.coefficients,
-        })
+        self.frame.as_ref().map(|frame| Lattice { frame, coefficients: &self.coefficients })
     }
 }
 

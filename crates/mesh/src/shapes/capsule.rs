@@ -1,4 +1,5 @@
 use glam::{DVec3, dvec3};
+use multiversion::multiversion;
 
 use super::{ShapeError, inverse_or_zero, positive};
 use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
@@ -35,16 +36,7 @@ impl Capsule {
 
 impl Distance for Capsule {
     fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
-        for i in 0..LANES {
-            let (x, y) = (points.x[i], points.y[i]);
-            let z = points.z[i] - points.z[i].clamp(-self.half_length, self.half_length);
-            let length = (x * x + y * y + z * z).sqrt();
-            let inverse = inverse_or_zero(length);
-            out.value[i] = length - self.radius;
-            out.gradient.x[i] = x * inverse;
-            out.gradient.y[i] = y * inverse;
-            out.gradient.z[i] = z * inverse;
-        }
+        sample(self, points, out);
     }
 
     fn bounds(&self) -> Aabb {
@@ -54,5 +46,20 @@ impl Distance for Capsule {
 
     fn centroid(&self) -> DVec3 {
         DVec3::ZERO
+    }
+}
+
+/// [`Distance::sample_into`] in registers as wide as the machine has.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn sample(shape: &Capsule, points: &PointBlock, out: &mut DistanceBlock) {
+    for i in 0..LANES {
+        let (x, y) = (points.x[i], points.y[i]);
+        let z = points.z[i] - points.z[i].clamp(-shape.half_length, shape.half_length);
+        let length = (x * x + y * y + z * z).sqrt();
+        let inverse = inverse_or_zero(length);
+        out.value[i] = length - shape.radius;
+        out.gradient.x[i] = x * inverse;
+        out.gradient.y[i] = y * inverse;
+        out.gradient.z[i] = z * inverse;
     }
 }

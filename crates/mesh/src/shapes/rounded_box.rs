@@ -1,4 +1,5 @@
 use glam::DVec3;
+use multiversion::multiversion;
 
 use super::{ShapeError, inverse_or_zero, positive, sign_or_zero};
 use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
@@ -41,24 +42,7 @@ impl RoundedBox {
 impl Distance for RoundedBox {
     /// The distance to the inner box that the ball's center sweeps, less the ball's radius.
     fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
-        let core = self.half_extents - self.rounding;
-        for i in 0..LANES {
-            let (x, y, z) = (points.x[i], points.y[i], points.z[i]);
-            let (qx, qy, qz) = (x.abs() - core.x, y.abs() - core.y, z.abs() - core.z);
-            let (ox, oy, oz) = (qx.max(0.0), qy.max(0.0), qz.max(0.0));
-            let outside = (ox * ox + oy * oy + oz * oz).sqrt();
-            let nearest = qx.max(qy).max(qz);
-            out.value[i] = outside + nearest.min(0.0) - self.rounding;
-
-            let inverse = inverse_or_zero(outside);
-            // Inside the core the nearest face alone gives the direction; two faces equally near give none.
-            let ties = f64::from(qx == nearest) + f64::from(qy == nearest) + f64::from(qz == nearest);
-            let face = if outside == 0.0 && ties == 1.0 { 1.0 } else { 0.0 };
-            let along = |q: f64, o: f64| o * inverse + if q == nearest { face } else { 0.0 };
-            out.gradient.x[i] = sign_or_zero(x) * along(qx, ox);
-            out.gradient.y[i] = sign_or_zero(y) * along(qy, oy);
-            out.gradient.z[i] = sign_or_zero(z) * along(qz, oz);
-        }
+        sample(self, points, out);
     }
 
     fn bounds(&self) -> Aabb {
@@ -67,5 +51,28 @@ impl Distance for RoundedBox {
 
     fn centroid(&self) -> DVec3 {
         DVec3::ZERO
+    }
+}
+
+/// [`Distance::sample_into`] in registers as wide as the machine has.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn sample(shape: &RoundedBox, points: &PointBlock, out: &mut DistanceBlock) {
+    let core = shape.half_extents - shape.rounding;
+    for i in 0..LANES {
+        let (x, y, z) = (points.x[i], points.y[i], points.z[i]);
+        let (qx, qy, qz) = (x.abs() - core.x, y.abs() - core.y, z.abs() - core.z);
+        let (ox, oy, oz) = (qx.max(0.0), qy.max(0.0), qz.max(0.0));
+        let outside = (ox * ox + oy * oy + oz * oz).sqrt();
+        let nearest = qx.max(qy).max(qz);
+        out.value[i] = outside + nearest.min(0.0) - shape.rounding;
+
+        let inverse = inverse_or_zero(outside);
+        // Inside the core the nearest face alone gives the direction; two faces equally near give none.
+        let ties = f64::from(qx == nearest) + f64::from(qy == nearest) + f64::from(qz == nearest);
+        let face = if outside == 0.0 && ties == 1.0 { 1.0 } else { 0.0 };
+        let along = |q: f64, o: f64| o * inverse + if q == nearest { face } else { 0.0 };
+        out.gradient.x[i] = sign_or_zero(x) * along(qx, ox);
+        out.gradient.y[i] = sign_or_zero(y) * along(qy, oy);
+        out.gradient.z[i] = sign_or_zero(z) * along(qz, oz);
     }
 }

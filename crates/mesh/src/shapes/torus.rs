@@ -1,4 +1,5 @@
 use glam::{DVec3, dvec3};
+use multiversion::multiversion;
 
 use super::{ShapeError, inverse_or_zero, positive};
 use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
@@ -34,20 +35,7 @@ impl Torus {
 
 impl Distance for Torus {
     fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
-        for i in 0..LANES {
-            let (x, y, z) = (points.x[i], points.y[i], points.z[i]);
-            // Where the squares overflow, finite, so that no product below is ∞ · 0.
-            let radius = (x * x + y * y).sqrt().min(f64::MAX);
-            let off_circle = radius - self.major;
-            let length = (off_circle * off_circle + z * z).sqrt();
-            // On the axis every point of a circle is equally near: no gradient.
-            let inverse = if radius > 0.0 { inverse_or_zero(length) } else { 0.0 };
-            let (radial, outward) = (off_circle * inverse, inverse_or_zero(radius));
-            out.value[i] = length - self.minor;
-            out.gradient.x[i] = x * outward * radial;
-            out.gradient.y[i] = y * outward * radial;
-            out.gradient.z[i] = z * inverse;
-        }
+        sample(self, points, out);
     }
 
     fn bounds(&self) -> Aabb {
@@ -58,5 +46,24 @@ impl Distance for Torus {
 
     fn centroid(&self) -> DVec3 {
         DVec3::ZERO
+    }
+}
+
+/// [`Distance::sample_into`] in registers as wide as the machine has.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn sample(shape: &Torus, points: &PointBlock, out: &mut DistanceBlock) {
+    for i in 0..LANES {
+        let (x, y, z) = (points.x[i], points.y[i], points.z[i]);
+        // Where the squares overflow, finite, so that no product below is ∞ · 0.
+        let radius = (x * x + y * y).sqrt().min(f64::MAX);
+        let off_circle = radius - shape.major;
+        let length = (off_circle * off_circle + z * z).sqrt();
+        // On the axis every point of a circle is equally near: no gradient.
+        let inverse = if radius > 0.0 { inverse_or_zero(length) } else { 0.0 };
+        let (radial, outward) = (off_circle * inverse, inverse_or_zero(radius));
+        out.value[i] = length - shape.minor;
+        out.gradient.x[i] = x * outward * radial;
+        out.gradient.y[i] = y * outward * radial;
+        out.gradient.z[i] = z * inverse;
     }
 }

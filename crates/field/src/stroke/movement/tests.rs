@@ -205,14 +205,14 @@ fn sleeping_changes_no_bit_around(bar: Arc<Tool>) {
     for segment in &stroke.segments {
         let field = RigidField::new(&stroke.tool, segment.twist);
         let mut travelers = Travelers::new(&mut wakeful);
-        let mut stages = [VelocityBlock::REST; 4];
+        let mut blocks = [Rk4Block::new(VelocityBlock::REST); ABREAST];
         for step in 0..segment.steps() {
             for index in 0..travelers.world.len() {
                 if travelers.state[index] == State::Resting {
                     travelers.local[index] = segment.placements[step].to_local(travelers.world[index]);
                 }
                 // Through the same step, but never asked whether it may sleep.
-                segment.step_block(&field, step, &[index as u32], &mut travelers, &mut stages);
+                segment.step_blocks(&field, step, &[index as u32], &mut travelers, &mut blocks);
             }
         }
         travelers.arrive(&segment.placements[segment.steps()]);

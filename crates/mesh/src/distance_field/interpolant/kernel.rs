@@ -2,29 +2,48 @@
 
 use super::columns::Columns;
 use crate::distance_field::{
+    Grid,
     real::Real,
     spline::{weight_derivatives, weights},
 };
 use crate::{DistanceBlock, LANES, PointBlock};
 
-/// Coefficients on a grid whose first node lies at `origin`; at least four nodes along each axis.
+/// Coefficients on a grid, and where it lies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lattice<'a> {
-    pub(super) origin: [f64; 3],
-    /// Cells in a unit of length.
-    pub(super) cells_per_length: f64,
-    pub(super) dims: [u32; 3],
+    pub(super) frame: &'a Frame,
     pub(super) coefficients: &'a [f32],
+}
+
+/// Where a grid lies.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    origin: [f64; 3],
+    cells_per_length: f64,
+    dims: [u32; 3],
+    /// Along each axis the last cell that has all its neighbors; the first is number one.
+    last_cell: [f64; 3],
+}
+
+impl Frame {
+    /// None where no cell has all its neighbors.
+    pub(super) fn new(grid: &Grid) -> Option<Self> {
+        // Grids have no more nodes than a `u32` can tell.
+        grid.dims.iter().all(|&nodes| nodes >= 4).then(|| Self {
+            origin: grid.origin.to_array(),
+            cells_per_length: 1.0 / grid.cell,
+            dims: grid.dims.map(|nodes| nodes as u32),
+            last_cell: grid.dims.map(|nodes| nodes as f64 - 3.0),
+        })
+    }
 }
 
 /// Where points lie among the cells that have all their neighbors.
 struct Place<T> {
     /// The first of the 4³ coefficients around each point.
     starts: [u32; LANES],
-    /// The parts of the cell passed along x, y and z.
+    /// The parts of the cell passed along x, y and z; not between zero and one where the point lies in no such cell.
     passed: [[T; LANES]; 3],
-    /// Whether the point lies in such a cell; if not, the others name one anyhow.
-    is_inside: [bool; LANES],
 }
 
 impl Lattice<'_> {
@@ -38,10 +57,11 @@ impl Lattice<'_> {
     #[inline(always)]
     #[expect(unsafe_code, reason = "the rows are loaded without checks of their range")]
     pub(super) unsafe fn sample<T: Real, C: Columns>(&self, points: &PointBlock, out: &mut DistanceBlock) {
-        let [row, layer] = [self.dims[0] as usize, self.dims[0] as usize * self.dims[1] as usize];
+        let [row, rows, layers] = self.frame.dims.map(|nodes| nodes as usize);
+        let layer = row * rows;
         // `Place::of` keeps every stencil inside the lattice.
-        assert!(self.coefficients.len() == layer * self.dims[2] as usize);
-        let Place { starts, passed, is_inside } = Place::<T>::of(self, points);
+        assert!(self.coefficients.len() == layer * layers);
+        let Place { starts, passed } = Place::<T>::of(self.frame, points);
 
         let mut weight = [[[T::ZERO; LANES]; 4]; 3];
         let mut slope = [[[T::ZERO; LANES]; 4]; 3];
@@ -67,10 +87,12 @@ impl Lattice<'_> {
                     reference = columns[1];
                 }
                 for lane in 0..LANES {
-                    let center = T::of_single(reference[lane]);
-                    let [a, b, c, d] = [0, 1, 2, 3].map(|i| T::of_single(columns[i][lane]) - center);
-                    let dot = |w: &[[T; LANES]; 4]| a * w[0][lane] + b * w[1][lane] + (c * w[2][lane] + d * w[3][lane]);
-                    let (line, line_along_x) = (dot(&weight[0]), dot(&slope[0]));
+                    let [a, b, c, d] = [0, 1, 2, 3].map(|i| T::of_single(columns[i][lane]));
+                    // Weights sum to one, and their derivatives to zero: the second needs no product.
+                    let (a, c, d) = (a - b, c - b, d - b);
+                    let dot = |w: &[[T; LANES]; 4]| a * w[0][lane] + (c * w[2][lane] + d * w[3][lane]);
+                    let line = b - T::of_single(reference[lane]) + dot(&weight[0]);
+                    let line_along_x = dot(&slope[0]);
                     plane[lane] += weight[1][j][lane] * line;
                     plane_along_x[lane] += weight[1][j][lane] * line_along_x;
                     plane_along_y[lane] += slope[1][j][lane] * line;
@@ -85,9 +107,11 @@ impl Lattice<'_> {
         }
 
         for lane in 0..LANES {
-            let scale = |slope: T| if is_inside[lane] { slope.to_f64() * self.cells_per_length } else { 0.0 };
+            let is_within = |part: T| part >= T::ZERO && part <= T::of(1.0);
+            let is_inside = is_within(passed[0][lane]) & is_within(passed[1][lane]) & is_within(passed[2][lane]);
+            let scale = |slope: T| if is_inside { slope.to_f64() * self.frame.cells_per_length } else { 0.0 };
             let sum = f64::from(reference[lane]) + value[lane].to_f64();
-            out.value[lane] = if is_inside[lane] { sum } else { f64::INFINITY };
+            out.value[lane] = if is_inside { sum } else { f64::INFINITY };
             out.gradient.x[lane] = scale(along_x[lane]);
             out.gradient.y[lane] = scale(along_y[lane]);
             out.gradient.z[lane] = scale(along_z[lane]);
@@ -98,24 +122,22 @@ impl Lattice<'_> {
 impl<T: Real> Place<T> {
     #[inline(always)]
     #[expect(unsafe_code, reason = "a cast without checks")]
-    fn of(lattice: &Lattice<'_>, points: &PointBlock) -> Self {
-        let mut place = Self { starts: [0; LANES], passed: [[T::ZERO; LANES]; 3], is_inside: [true; LANES] };
+    fn of(frame: &Frame, points: &PointBlock) -> Self {
+        let mut place = Self { starts: [0; LANES], passed: [[T::ZERO; LANES]; 3] };
         let mut stride = 1;
         for (axis, coordinates) in [&points.x, &points.y, &points.z].into_iter().enumerate() {
-            let origin = lattice.origin[axis];
-            let (last_cell, end) = (f64::from(lattice.dims[axis] - 3), f64::from(lattice.dims[axis] - 2));
+            let (origin, last_cell) = (frame.origin[axis], frame.last_cell[axis]);
             for lane in 0..LANES {
-                let local = (coordinates[lane] - origin) * lattice.cells_per_length;
-                place.is_inside[lane] &= local >= 1.0 && local <= end;
-                // The upper end belongs to the last cell that has all neighbors. What is not a number goes to the first one.
+                let local = (coordinates[lane] - origin) * frame.cells_per_length;
+                // The upper end belongs to the last cell. What is not a number goes to the first one.
                 let bounded = if local > 1.0 { local } else { 1.0 };
                 let bounded = if bounded < last_cell { bounded } else { last_cell };
-                // SAFETY: at least one, and no more than there are nodes in a layer or a row. A checked cast is no vector code.
+                // SAFETY: at least one, and no more than there are nodes in a row. A checked cast is no vector code.
                 let cell: i32 = unsafe { bounded.to_int_unchecked() };
                 place.passed[axis][lane] = T::of(local - f64::from(cell));
                 place.starts[lane] += (cell as u32 - 1) * stride;
             }
-            stride *= lattice.dims[axis];
+            stride *= frame.dims[axis];
         }
         place
     }

@@ -12,10 +12,11 @@ use crate::{
 /// one axis the weights are those of the derivative, 1.5 together, which roundings move by 21u.
 const SLOPE_ROUNDING: f64 = 93.0 / (1 << 24) as f64;
 
+const GRID: Grid = Grid { origin: DVec3::new(-3.0, 2.0, 0.5), cell: 0.1, dims: [19, 17, 23] };
+
 /// Coefficients like those of a distance with kinks, far from zero: slopes of up to one, rough.
 fn interpolant() -> Interpolant {
-    let dims = [19, 17, 23];
-    let grid = Grid { origin: DVec3::new(-3.0, 2.0, 0.5), cell: 0.1, dims };
+    let grid = GRID;
     let samples: Vec<f32> = (0..grid.len())
         .map(|index| {
             let from = grid.node_at(index) - DVec3::new(-2.1, 2.7, 1.5);
@@ -26,14 +27,14 @@ fn interpolant() -> Interpolant {
 }
 
 /// Points inside and beyond, on nodes and on the border of what can be sampled, and what is not finite.
-fn blocks(interpolant: &Interpolant) -> Vec<PointBlock> {
-    let Grid { origin, cell, dims } = interpolant.grid;
+fn blocks() -> Vec<PointBlock> {
+    let Grid { origin, cell, dims } = GRID;
     let size = cell * DVec3::from_array(dims.map(|nodes| nodes as f64 - 1.0));
     let scattered = (1..4000).map(|index| {
         let part = (f64::from(index) * DVec3::new(0.819_172_513, 0.671_043_607, 0.549_700_478)).fract();
         origin + size * (1.1 * part - 0.05)
     });
-    let nodes = (0..interpolant.grid.len()).map(|index| interpolant.grid.node_at(index));
+    let nodes = (0..GRID.len()).map(|index| GRID.node_at(index));
     let wild = [DVec3::NAN, DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::splat(1e300), origin + DVec3::splat(f64::NAN)];
     let points: Vec<DVec3> = scattered.chain(nodes).chain(wild).collect();
     points.chunks(LANES).map(PointBlock::gather).collect()
@@ -52,7 +53,7 @@ fn agree(dispatched: Kernel, narrow: &[(&str, Kernel)]) {
     let interpolant = interpolant();
     let lattice = interpolant.lattice().unwrap();
     let (mut expected, mut found) = (DistanceBlock::FAR, DistanceBlock::FAR);
-    for points in blocks(&interpolant) {
+    for points in blocks() {
         dispatched(&lattice, &points, &mut expected);
         for (name, kernel) in narrow {
             kernel(&lattice, &points, &mut found);
@@ -98,7 +99,7 @@ fn single_precision_keeps_its_bounds() {
     let interpolant = interpolant();
     let (mut double, mut single) = (DistanceBlock::FAR, DistanceBlock::FAR);
     let (mut worst_value, mut worst_slope) = (0.0_f64, 0.0_f64);
-    for points in blocks(&interpolant) {
+    for points in blocks() {
         interpolant.sample_into(&points, &mut double);
         interpolant.sample_single_into(&points, &mut single);
         for lane in 0..LANES {
@@ -112,7 +113,7 @@ fn single_precision_keeps_its_bounds() {
             }
         }
     }
-    let slope_bound = SLOPE_ROUNDING * interpolant.spread / interpolant.grid.cell;
+    let slope_bound = SLOPE_ROUNDING * interpolant.spread / GRID.cell;
     assert!(worst_value <= interpolant.single_error(), "{worst_value:e} of {:e}", interpolant.single_error());
     assert!(worst_slope <= slope_bound, "{worst_slope:e} of {slope_bound:e}");
     // Bounds far from the truth would be useless. Roundings are random, and stencils seldom as steep as the steepest.
@@ -124,9 +125,9 @@ fn single_precision_keeps_its_bounds() {
 #[test]
 fn double_precision_is_the_sum_of_products() {
     let interpolant = interpolant();
-    let Grid { origin, cell, dims: [nx, ny, _] } = interpolant.grid;
+    let Grid { origin, cell, dims: [nx, ny, _] } = GRID;
     let mut block = DistanceBlock::FAR;
-    for points in blocks(&interpolant).iter().take(100) {
+    for points in blocks().iter().take(100) {
         interpolant.sample_into(points, &mut block);
         for lane in (0..LANES).filter(|&lane| block.value[lane].is_finite()) {
             let local = (points.get(lane) - origin) / cell;

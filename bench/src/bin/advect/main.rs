@@ -1,0 +1,18 @@
+//! Advection: points carried through Runge-Kutta steps by rigid tools, on one core.
+
+#![expect(clippy::print_stdout, reason = "benchmarks print their results")]
+
+mod frames;
+mod race;
+mod touched_part;
+
+use isochore_bench::on_one_core;
+
+fn main() {
+    on_one_core(|| {
+        frames::run();
+        race::run();
+        touched_part::run();
+    });
+    race::on_two_cores();
+}
