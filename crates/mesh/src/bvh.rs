@@ -11,17 +11,22 @@ use obvhs::bvh2::Bvh2;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
 
+use crate::Aabb;
 pub use closest_point::{ClosestPoint, Feature};
 pub(crate) use closest_point::{OnTriangle, SquaredDistance, closest_on_triangle};
 pub(crate) use unit_frame::UnitFrame;
 
-/// Triangles in a leaf at most: one test of the box for all of them. A kernel for many points amortizes well with 2 to 6.
-const LEAF_TRIANGLES: u32 = 4;
+/// Triangles in a leaf at most: one test of the box for all of them. Larger: more triangles are tried. Smaller: more boxes are, and
+/// have to be made.
+pub(crate) const LEAF_TRIANGLES: u32 = 6;
 
 /// Relative slack of pruning. Boxes are rounded outward, so the box distance in exact arithmetic is never too large; computed in
 /// `f64` from coordinates of size at most a few, it is off by less than ten rounding errors, as is the best squared distance it
 /// is compared with. Larger: needless visits. Smaller than 20 · 2⁻⁵³ = 2.3e-15: a nearest triangle could be missed.
 const PRUNING_SLACK: f64 = 1.0 + 1e-14;
+
+/// Triangles that one task looks at.
+const TRIANGLES_AT_ONCE: usize = 1 << 14;
 
 /// A node: an inner one has its children at `first` and `first + 1`, a leaf has `count` triangles from `first` on.
 #[derive(Debug, Clone, Copy)]
@@ -62,6 +67,7 @@ pub enum BvhError {
 /// A bounding volume hierarchy over the triangles of a mesh, built once and searched from any number of threads.
 #[derive(Debug, Clone)]
 pub struct Bvh {
+    bounds: Aabb,
     frame: UnitFrame,
     nodes: Vec<Node>,
     /// Longest way from the root to a leaf, in nodes.
@@ -80,24 +86,28 @@ impl Bvh {
     /// # Errors
     /// See [`BvhError`].
     pub fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, BvhError> {
-        check(positions, triangles)?;
-        let frame = UnitFrame::around(triangles.iter().flatten().map(|&vertex| positions[vertex as usize]));
-        let corners: Vec<_> =
-            triangles.par_iter().map(|t| t.map(|vertex| frame.inward(positions[vertex as usize]))).collect();
-        let boxes: Vec<_> = corners.par_iter().map(outward_box).collect();
+        Ok(Self::within(checked_bounds(positions, triangles)?, positions, triangles))
+    }
+
+    /// Builds the hierarchy of triangles that have these [`checked_bounds`].
+    pub(crate) fn within(bounds: Aabb, positions: &[DVec3], triangles: &[[u32; 3]]) -> Self {
+        let frame = UnitFrame::around(bounds);
+        let local: Vec<_> = positions.par_iter().map(|&position| frame.inward(position)).collect();
+        let boxes = outward_boxes(&local, triangles);
 
         // The portable builder: the convenience functions around it read the clock, which WebAssembly has not.
         let indices = (0..boxes.len() as u32).collect();
         let tree = PlocBuilder::new().build(PlocSearchDistance::Low, &boxes, indices, SortPrecision::U64, 2);
         let (nodes, order) = with_larger_leaves(&tree);
-        Ok(Self {
+        Self {
+            bounds,
             frame,
             depth: depth(&nodes),
             nodes,
+            corners: order.par_iter().map(|&i| triangles[i as usize].map(|vertex| local[vertex as usize])).collect(),
             triangles: order.par_iter().map(|&i| triangles[i as usize]).collect(),
-            corners: order.par_iter().map(|&i| corners[i as usize]).collect(),
             order,
-        })
+        }
     }
 
     /// The point of the triangles nearest to `point`, and the feature it lies on. Of equally near ones, any, but always the same.
@@ -146,12 +156,18 @@ impl Bvh {
         best
     }
 
+    /// The box around all triangles, model units.
+    pub(crate) fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
     /// The frame in which nodes and corners are stored.
     pub(crate) fn frame(&self) -> &UnitFrame {
         &self.frame
     }
 
-    /// Nodes, the root first, parents before children.
+    /// Nodes in preorder: the root first, then always the two children of a node beside each other, then all that is below the first of
+    /// them, then all below the second. Leaves have their triangles in the same order.
     pub(crate) fn nodes(&self) -> &[Node] {
         &self.nodes
     }
@@ -186,30 +202,48 @@ impl Node {
     }
 }
 
-/// Whether there are triangles, and all have valid indices and finite corners.
-pub(crate) fn check(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), BvhError> {
+/// The box around all triangles, of which none may name a vertex that is not there or not finite.
+///
+/// # Errors
+/// See [`BvhError`].
+pub(crate) fn checked_bounds(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Aabb, BvhError> {
     if triangles.is_empty() {
         return Err(BvhError::Empty);
     }
-    for (triangle, corners) in triangles.iter().enumerate() {
-        for &vertex in corners {
-            match positions.get(vertex as usize) {
-                None => return Err(BvhError::IndexOutOfRange { triangle, vertex, vertices: positions.len() }),
-                Some(position) if !position.is_finite() => return Err(BvhError::NotFinite { vertex }),
-                Some(_) => {}
+    let bounds_of = |(first, chunk): (usize, &[[u32; 3]])| {
+        let mut bounds = Aabb::EMPTY;
+        for (i, corners) in chunk.iter().enumerate() {
+            for &vertex in corners {
+                bounds = match positions.get(vertex as usize) {
+                    None => {
+                        let triangle = first * TRIANGLES_AT_ONCE + i;
+                        return Err(BvhError::IndexOutOfRange { triangle, vertex, vertices: positions.len() });
+                    }
+                    Some(position) if !position.is_finite() => return Err(BvhError::NotFinite { vertex }),
+                    Some(&position) => bounds.including(position),
+                }
             }
         }
-    }
-    Ok(())
+        Ok(bounds)
+    };
+    let parts: Vec<_> = triangles.par_chunks(TRIANGLES_AT_ONCE).enumerate().map(bounds_of).collect();
+    // In order, so that the first error is the one that counts.
+    parts.into_iter().try_fold(Aabb::EMPTY, |bounds, part| Ok(bounds.union(part?)))
 }
 
-/// The smallest box of `f32` that holds a triangle of `f64`.
-fn outward_box(corners: &[DVec3; 3]) -> obvhs::aabb::Aabb {
-    let [a, b, c] = *corners;
-    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
-    let down = |x: f64| if f64::from(x as f32) > x { (x as f32).next_down() } else { x as f32 };
-    let up = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
-    obvhs::aabb::Aabb::new(Vec3A::from_array(min.to_array().map(down)), Vec3A::from_array(max.to_array().map(up)))
+/// The smallest boxes that hold each triangle, but for rounding the coordinates outward to `f32`.
+fn outward_boxes(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<obvhs::aabb::Aabb> {
+    // A little more than half a unit in the last place, so that rounding to nearest ends beyond; without a branch, which would be
+    // foretold wrong every other time.
+    let slack = |x: f64| x.abs() * f64::from(f32::EPSILON) + f64::from(f32::MIN_POSITIVE);
+    let rounded: Vec<[[f32; 3]; 2]> = (positions.par_iter())
+        .map(|p| [p.to_array().map(|x| (x - slack(x)) as f32), p.to_array().map(|x| (x + slack(x)) as f32)])
+        .collect();
+    let outward_box = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|vertex| rounded[vertex as usize].map(Vec3A::from_array));
+        obvhs::aabb::Aabb::new(a[0].min(b[0]).min(c[0]), a[1].max(b[1]).max(c[1]))
+    };
+    triangles.par_iter().map(outward_box).collect()
 }
 
 /// The nodes of a new tree, which has one triangle a leaf, cut where [`LEAF_TRIANGLES`] remain: children behind their parents and beside each

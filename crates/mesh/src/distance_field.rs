@@ -21,11 +21,13 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::mesh_distance::{open_edges, surface_bounds, surface_centroid};
+use crate::bvh::checked_bounds;
+use crate::mesh_distance::{open_edges, surface_centroid};
 use crate::{Aabb, Bvh, BvhError, Cancelled, Distance, DistanceBlock, Monitor, PointBlock, TriMesh};
 
 pub use grid::Grid;
 use interpolant::Interpolant;
+use packet::PacketSearch;
 
 /// How far a grid reaches beyond the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -162,8 +164,7 @@ impl DistanceField {
         monitor: &dyn Monitor,
     ) -> Result<Self, DistanceFieldError> {
         monitor.check("hierarchy", 0.0)?;
-        let bvh = Arc::new(Bvh::new(&mesh.positions, &mesh.triangles)?);
-        let surface = surface_bounds(mesh);
+        let surface = checked_bounds(&mesh.positions, &mesh.triangles)?;
         let grid = Grid::around(surface, options.resolution, options.padding)?;
         if options.band.is_nan() || options.band <= 0.0 {
             return Err(DistanceFieldError::Band { width: options.band });
@@ -172,14 +173,25 @@ impl DistanceField {
         if bytes > options.memory_limit || grid.len() > u32::MAX as usize {
             return Err(DistanceFieldError::Memory { dims: grid.dims, bytes, limit: options.memory_limit });
         }
-        let open_edges = open_edges(&mesh.triangles, mesh.positions.len());
+        let ((bvh, search), (open_edges, volume_and_centroid)) = rayon::join(
+            || {
+                let bvh = Arc::new(Bvh::within(surface, &mesh.positions, &mesh.triangles));
+                let search = PacketSearch::new(&bvh, &grid);
+                (bvh, search)
+            },
+            || {
+                let open_edges = open_edges(&mesh.triangles, mesh.positions.len());
+                let volume_and_centroid = open_edges.is_empty().then(|| mesh.volume_and_centroid());
+                (open_edges, volume_and_centroid)
+            },
+        );
         let is_closed = open_edges.is_empty();
-        let volume = is_closed.then(|| mesh.volume());
-        if let Some(volume) = volume.filter(|&volume| volume < 0.0) {
+        if let Some((volume, _)) = volume_and_centroid.filter(|&(volume, _)| volume < 0.0) {
             return Err(DistanceFieldError::InsideOut { volume });
         }
+        let centroid = surface_centroid(mesh, surface, volume_and_centroid);
 
-        let (mut samples, sample_error) = sampling::unsigned(&bvh, &grid, options.band, monitor)?;
+        let (mut samples, sample_error) = sampling::unsigned(&search, &bvh, &grid, options.band, monitor)?;
         monitor.check("signs", 0.0)?;
         signs::negate_inside(&mut samples, mesh, &open_edges, &bvh, &grid, monitor)?;
         // At the end of the band the distance has a kink, which the spline smooths as it does others.
@@ -195,7 +207,6 @@ impl DistanceField {
         };
         monitor.check("spline", 0.0)?;
         let interpolant = Interpolant::new(&grid, &samples);
-        let centroid = surface_centroid(mesh, volume);
         Ok(Self { grid, samples, sample_error, interpolant, surface, centroid, reach, is_closed })
     }
 

@@ -55,6 +55,11 @@ impl TriMesh {
 
     /// Centroid of the volume inside the surface; the center of the bounds where there is no volume to speak of.
     pub fn volume_centroid(&self) -> DVec3 {
+        self.volume_and_centroid().1
+    }
+
+    /// [`volume`](Self::volume) and [`volume_centroid`](Self::volume_centroid) with one look at each triangle.
+    pub(crate) fn volume_and_centroid(&self) -> (f64, DVec3) {
         let frame = Frame::of(&self.positions);
         let [six_volumes, x, y, z] = sum_terms(self.triangles.len(), |triangle| {
             let [a, b, c] = self.corners(triangle).map(|corner| frame.local(corner));
@@ -62,10 +67,12 @@ impl TriMesh {
             let moment = (a + b + c) * six_volume;
             [six_volume, moment.x, moment.y, moment.z]
         });
-        if six_volumes.abs() < NO_VOLUME {
-            return frame.center;
-        }
-        frame.world(DVec3::new(x, y, z) / (4.0 * six_volumes))
+        let centroid = if six_volumes.abs() < NO_VOLUME {
+            frame.center
+        } else {
+            frame.world(DVec3::new(x, y, z) / (4.0 * six_volumes))
+        };
+        (frame.world_volume(six_volumes / 6.0), centroid)
     }
 
     /// Area of all triangles, square model units.
@@ -152,6 +159,7 @@ const NO_VOLUME: f64 = 1e-12;
 /// coordinates of a huge or tiny mesh neither overflow nor vanish. The scaling is exact.
 struct Frame {
     center: DVec3,
+    /// A power of two.
     scale: f64,
 }
 
@@ -168,7 +176,8 @@ impl Frame {
     }
 
     fn local(&self, point: DVec3) -> DVec3 {
-        (point - self.center) / self.scale
+        // As exact as to divide by it.
+        (point - self.center) * (1.0 / self.scale)
     }
 
     fn world(&self, point: DVec3) -> DVec3 {

@@ -9,6 +9,7 @@ use glam::DVec3;
 pub(crate) use open_edges::open_edges;
 
 use crate::bvh::closest_on_triangle;
+use crate::compensated_sum::sum_terms;
 use crate::pseudo_normals::PseudoNormals;
 use crate::{
     Aabb, Bvh, ClosestPoint, Distance, DistanceBlock, LANES, Monitor, PointBlock, SelfIntersectionError,
@@ -53,8 +54,8 @@ impl MeshDistance {
             Sides::WindingNumber(WindingNumber::new(bvh.clone()))
         };
         let is_closed = open_edges(&mesh.triangles, mesh.positions.len()).is_empty();
-        let centroid = surface_centroid(mesh, is_closed.then(|| mesh.volume()));
-        Ok(Self { bounds: surface_bounds(mesh), centroid, bvh, sides })
+        let centroid = surface_centroid(mesh, bvh.bounds(), is_closed.then(|| mesh.volume_and_centroid()));
+        Ok(Self { bounds: bvh.bounds(), centroid, bvh, sides })
     }
 
     /// The nearest point of the mesh.
@@ -129,26 +130,22 @@ fn is_simple(mesh: &TriMesh) -> bool {
         })
 }
 
-/// The box around all triangles; vertices without any do not count.
-pub(crate) fn surface_bounds(mesh: &TriMesh) -> Aabb {
-    Aabb::of(mesh.triangles.iter().flatten().map(|&vertex| mesh.positions[vertex as usize]))
-}
-
-/// Centroid of the volume inside a closed mesh, given that volume; of the area, if it is open or encloses nothing.
-pub(crate) fn surface_centroid(mesh: &TriMesh, closed_volume: Option<f64>) -> DVec3 {
-    let bounds = surface_bounds(mesh);
+/// Centroid of the volume inside a closed mesh within `bounds`, given that volume and its centroid; of the area, if it is open or
+/// encloses nothing.
+pub(crate) fn surface_centroid(mesh: &TriMesh, bounds: Aabb, closed: Option<(f64, DVec3)>) -> DVec3 {
     let size = bounds.size().max_element();
-    if closed_volume.is_some_and(|volume| volume.abs() > LEAST_VOLUME * size * size * size) {
-        return mesh.volume_centroid();
+    if let Some((_, centroid)) = closed.filter(|(volume, _)| volume.abs() > LEAST_VOLUME * size * size * size) {
+        return centroid;
     }
     // About the center, so that nothing cancels far from the origin.
     let center = bounds.center();
-    let (area, moment) = (0..mesh.triangles.len()).fold((0.0, DVec3::ZERO), |(area, moment), triangle| {
+    let [area, x, y, z] = sum_terms(mesh.triangles.len(), |triangle| {
         let [a, b, c] = mesh.corners(triangle).map(|corner| corner - center);
         let part = (b - a).cross(c - a).length();
-        (area + part, moment + part * (a + b + c) / 3.0)
+        let moment = part * (a + b + c) / 3.0;
+        [part, moment.x, moment.y, moment.z]
     });
-    if area > 0.0 { center + moment / area } else { center }
+    if area > 0.0 { center + DVec3::new(x, y, z) / area } else { center }
 }
 
 /// Share of the bounding cube below which a volume has no centroid worth the name. Larger: thin sheets would get the centroid of

@@ -16,8 +16,8 @@ use glam::DVec3;
 use multiversion::multiversion;
 use rayon::prelude::*;
 
-use crate::bvh::{UnitFrame, check};
-use crate::{BvhError, Cancelled, Monitor, TriMesh};
+use crate::bvh::{UnitFrame, checked_bounds};
+use crate::{Aabb, BvhError, Cancelled, Monitor, TriMesh};
 use box_tree::{BoxTree, NodePair};
 use common_corners::CommonCorners;
 use exact_triangle::{ExactTriangle, scaled};
@@ -66,13 +66,14 @@ impl SelfIntersections {
     /// # Errors
     /// See [`SelfIntersectionError`].
     pub fn of(mesh: &TriMesh, monitor: &dyn Monitor) -> Result<Self, SelfIntersectionError> {
-        check(&mesh.positions, &mesh.triangles)?;
+        checked_bounds(&mesh.positions, &mesh.triangles)?;
         Ok(Self::among(&mesh.positions, &mesh.triangles, monitor)?)
     }
 
     /// Finds all pairs among one triangle or more with valid indices and finite corners.
     pub(crate) fn among(positions: &[DVec3], triangles: &[[u32; 3]], monitor: &dyn Monitor) -> Result<Self, Cancelled> {
-        let frame = UnitFrame::around(triangles.iter().flatten().map(|&vertex| positions[vertex as usize]));
+        let corners = triangles.iter().flatten().map(|&vertex| positions[vertex as usize]);
+        let frame = UnitFrame::around(Aabb::of(corners));
         let tree = BoxTree::new(positions, triangles, &frame);
         let in_order = tree.order.par_iter().map(|&triangle| triangles[triangle as usize]).collect();
         let search = Search { tree, points: scaled(positions, triangles, frame.scale()), triangles: in_order };

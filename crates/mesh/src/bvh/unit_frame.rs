@@ -13,9 +13,8 @@ pub(crate) struct UnitFrame {
 }
 
 impl UnitFrame {
-    /// The frame around `points`.
-    pub(crate) fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
-        let aabb = Aabb::of(points);
+    /// The frame around what these bounds hold.
+    pub(crate) fn around(aabb: Aabb) -> Self {
         // Halves first: the sum and the difference of huge coordinates could overflow.
         let (min, max) = (0.5 * aabb.min, 0.5 * aabb.max);
         let half = (max - min).max_element();

@@ -38,7 +38,8 @@ impl FlatTriangle {
         let apex = DVec2::new(along.dot(c - a), across.dot(c - a));
         let right = apex - DVec2::new(base, 0.0);
         let f = |v: DVec3| v.to_array().map(|x| x as f32);
-        let f2 = |v: DVec2| v.normalize_or_zero().to_array().map(|x| x as f32);
+        // An edge without length may have any direction, but must have one.
+        let f2 = |v: DVec2| v.try_normalize().unwrap_or(DVec2::X).to_array().map(|x| x as f32);
         Self {
             origin: f(a),
             along: f(along),

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::packet::{LANES, Lanes, Packet, greater};
 use crate::Bvh;
+use crate::bvh::{LEAF_TRIANGLES, Node};
 
 /// A box in any orientation, ready for distances to a packet of points.
 #[derive(Debug, Clone, Copy)]
@@ -19,19 +20,35 @@ pub(super) struct OrientedBox {
     /// Coordinates of the center along the axes.
     middle: [f32; 3],
     half: [f32; 3],
+    /// What it holds: eight times the number of its first child or triangle, plus the number of triangles, zero for an inner node.
+    held: u32,
 }
 
+const _: () = assert!(LEAF_TRIANGLES < 8 && size_of::<OrientedBox>() == 64, "three bits, and a line of the cache");
+
 impl OrientedBox {
+    /// The first of both children, if it has any.
+    #[inline(always)]
+    pub(super) fn children(&self) -> Option<usize> {
+        self.held.is_multiple_of(8).then_some(self.held as usize / 8)
+    }
+
+    /// The triangles of a leaf.
+    #[inline(always)]
+    pub(super) fn triangles(&self) -> Range<u32> {
+        self.held / 8..self.held / 8 + self.held % 8
+    }
+
     /// One for each node of the hierarchy, for points whose coordinates are not larger than `largest`.
     pub(super) fn of_nodes(bvh: &Bvh, largest: f64) -> Vec<Self> {
-        let mut pieces: Vec<Piece> = vec![Piece::default(); bvh.nodes().len()];
+        let of_leaf = |node: &Node| match node.count {
+            0 => Piece::default(),
+            count => Piece::of_triangles(bvh, node.first..node.first + count),
+        };
+        let mut pieces: Vec<Piece> = bvh.nodes().par_iter().map(of_leaf).collect();
         // Children come after their parents.
-        for (i, node) in bvh.nodes().iter().enumerate().rev() {
-            pieces[i] = if node.count > 0 {
-                Piece::of_triangles(bvh, node.first..node.first + node.count)
-            } else {
-                Piece::join(&pieces[node.first as usize], &pieces[node.first as usize + 1])
-            };
+        for (i, node) in bvh.nodes().iter().enumerate().rev().filter(|(_, node)| node.count == 0) {
+            pieces[i] = Piece::join(&pieces[node.first as usize], &pieces[node.first as usize + 1]);
         }
         // Boxes of large pieces hold the boxes of the grains in them, which is nearly as tight and far faster.
         let mut grains: Vec<&Piece> = (bvh.nodes().iter().zip(&pieces))
@@ -44,15 +61,15 @@ impl OrientedBox {
         let first_from = |slot: u32| grains.partition_point(|grain| grain.slots.start < slot);
 
         let rounding = COORDINATE_ROUNDING * (largest + 1.0);
-        (pieces.par_iter())
-            .map(|piece| {
+        (pieces.par_iter().zip(bvh.nodes()))
+            .map(|(piece, node)| {
                 let shell = Shell::along(piece);
                 let shell = if piece.slots.len() <= GRAIN {
                     shell.around(piece, bvh)
                 } else {
                     shell.holding(&shells[first_from(piece.slots.start)..first_from(piece.slots.end)])
                 };
-                shell.rounded(rounding)
+                shell.rounded(rounding, 8 * node.first + node.count)
             })
             .collect()
     }
@@ -115,12 +132,13 @@ impl Shell {
         })
     }
 
-    fn rounded(&self, rounding: f64) -> OrientedBox {
+    fn rounded(&self, rounding: f64, held: u32) -> OrientedBox {
         let f = |v: DVec3| v.to_array().map(|x| x as f32);
         OrientedBox {
             axes: [f(self.axes.x_axis), f(self.axes.y_axis), f(self.axes.z_axis)],
             middle: f(0.5 * (self.min + self.max)),
             half: f(0.5 * (self.max - self.min) + rounding),
+            held,
         }
     }
 }

@@ -5,9 +5,10 @@
 
 use rayon::prelude::*;
 
+use super::Grid;
 use super::flat_triangle::FlatTriangle;
 use super::oriented_box::OrientedBox;
-use crate::bvh::{Bvh, Node};
+use crate::{Aabb, Bvh};
 
 /// Nodes in a packet along x, y and z.
 pub(super) const PACKET: [usize; 3] = [4, 2, 2];
@@ -23,10 +24,11 @@ const MIDDLE: usize = 5;
 
 /// Triangles and boxes prepared for the kernel, with the hierarchy to find them in.
 #[derive(Debug)]
-pub(super) struct PacketSearch<'a> {
-    nodes: &'a [Node],
+pub(super) struct PacketSearch {
+    /// The hierarchy's nodes.
     boxes: Vec<OrientedBox>,
     triangles: Vec<FlatTriangle>,
+    largest: f64,
 }
 
 /// Points in the unit frame with the nearest triangles found so far.
@@ -50,7 +52,7 @@ pub(super) const NOTHING: u32 = u32::MAX;
 #[repr(align(64))]
 pub(super) struct Pending {
     squared: Lanes,
-    node: u32,
+    node: usize,
 }
 
 impl Packet {
@@ -65,11 +67,19 @@ impl Packet {
     }
 }
 
-impl<'a> PacketSearch<'a> {
-    /// For points whose coordinates in the unit frame are not larger than `largest`.
-    pub(super) fn new(bvh: &'a Bvh, largest: f64) -> Self {
+impl PacketSearch {
+    /// For the nodes of `grid`.
+    pub(super) fn new(bvh: &Bvh, grid: &Grid) -> Self {
+        let bounds = grid.bounds();
+        let extent = Aabb { min: bvh.frame().inward(bounds.min), max: bvh.frame().inward(bounds.max) };
+        let largest = extent.min.abs().max(extent.max.abs()).max_element();
         let triangles = bvh.corners().par_iter().map(FlatTriangle::new).collect();
-        Self { nodes: bvh.nodes(), boxes: OrientedBox::of_nodes(bvh, largest), triangles }
+        Self { boxes: OrientedBox::of_nodes(bvh, largest), triangles, largest }
+    }
+
+    /// The largest coordinate of a node in the unit frame.
+    pub(super) fn largest_coordinate(&self) -> f64 {
+        self.largest
     }
 
     /// Finds the nearest triangle for each lane. `guesses` are triangles likely to be near; they save time. `stack` is scratch.
@@ -87,26 +97,25 @@ impl<'a> PacketSearch<'a> {
             let mut index = pending.node;
             // Down to a leaf or to where no box is near enough, the nearer box first.
             loop {
-                let node = &self.nodes[index as usize];
-                if node.count > 0 {
-                    for slot in node.first..node.first + node.count {
+                let Some(first) = self.boxes[index].children() else {
+                    for slot in self.boxes[index].triangles() {
                         self.triangles[slot as usize].update(packet, slot);
                     }
                     break;
-                }
-                let left = self.boxes[node.first as usize].squared_distances(packet);
-                let right = self.boxes[node.first as usize + 1].squared_distances(packet);
+                };
+                let left = self.boxes[first].squared_distances(packet);
+                let right = self.boxes[first + 1].squared_distances(packet);
                 index = match (packet.may_improve(&left), packet.may_improve(&right)) {
                     (false, false) => break,
-                    (true, false) => node.first,
-                    (false, true) => node.first + 1,
+                    (true, false) => first,
+                    (false, true) => first + 1,
                     (true, true) if left[MIDDLE] <= right[MIDDLE] => {
-                        stack.push(Pending { squared: right, node: node.first + 1 });
-                        node.first
+                        stack.push(Pending { squared: right, node: first + 1 });
+                        first
                     }
                     (true, true) => {
-                        stack.push(Pending { squared: left, node: node.first });
-                        node.first + 1
+                        stack.push(Pending { squared: left, node: first });
+                        first + 1
                     }
                 };
             }

@@ -8,15 +8,19 @@ use rayon::prelude::*;
 use super::Grid;
 use super::exact_distance::{Points, exact_squared_distances};
 use super::packet::{LANES, NOTHING, PACKET, Packet, PacketSearch};
-use crate::{Aabb, Bvh, Cancelled, Monitor};
+use crate::{Bvh, Cancelled, Monitor};
 
 /// Distances without sign, and a bound on their error, both in model units.
 ///
 /// Triangles are chosen in `f32` and measured in `f64`, so that an error can only come from a choice between triangles that are
 /// nearly equally near, and from rounding the result. Nodes farther than `band` get that distance.
-pub(super) fn unsigned(bvh: &Bvh, grid: &Grid, band: f64, monitor: &dyn Monitor) -> Result<(Vec<f32>, f64), Cancelled> {
-    let largest = largest_coordinate(bvh, grid);
-    let search = PacketSearch::new(bvh, largest);
+pub(super) fn unsigned(
+    search: &PacketSearch,
+    bvh: &Bvh,
+    grid: &Grid,
+    band: f64,
+    monitor: &dyn Monitor,
+) -> Result<(Vec<f32>, f64), Cancelled> {
     monitor.check("distance", 0.0)?;
     let [nx, ny, nz] = grid.dims;
     let mut samples = vec![0.0; nx * ny * nz];
@@ -25,24 +29,24 @@ pub(super) fn unsigned(bvh: &Bvh, grid: &Grid, band: f64, monitor: &dyn Monitor)
     let done = AtomicUsize::new(0);
     // A slab knows nothing of other slabs, so that the result does not depend on how threads share them.
     samples.par_chunks_mut(slab).enumerate().try_for_each(|(number, samples)| {
-        let slab = Slab { search: &search, bvh, grid, band, layer: number * PACKET[2] };
-        let mut guesses = Vec::new();
+        let slab = Slab { search, bvh, grid, band, layer: number * PACKET[2] };
+        let mut last_strip = vec![[NOTHING; LANES]; nx.div_ceil(PACKET[0])];
         for strip in 0..ny.div_ceil(PACKET[1]) {
             if monitor.is_cancelled() {
                 return Err(Cancelled);
             }
-            sample_strip(&slab, strip, samples, &mut guesses);
+            sample_strip(&slab, strip, samples, &mut last_strip);
         }
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         monitor.check("distance", done as f64 / slabs as f64)
     })?;
     let farthest = samples.par_iter().copied().reduce(|| 0.0, f32::max);
-    Ok((samples, error_bound(bvh, largest, f64::from(farthest))))
+    Ok((samples, error_bound(bvh, search.largest_coordinate(), f64::from(farthest))))
 }
 
 /// Layers of a grid as thick as a packet.
 struct Slab<'a> {
-    search: &'a PacketSearch<'a>,
+    search: &'a PacketSearch,
     bvh: &'a Bvh,
     grid: &'a Grid,
     band: f64,
@@ -50,10 +54,10 @@ struct Slab<'a> {
     layer: usize,
 }
 
-/// Fills a strip of packets through the layers that `samples` has room for, every other one backward: so the first packet is
-/// beside the last of the strip before, and the triangles found there, `guesses`, are near.
+/// Fills a strip of packets through the layers that `samples` has room for. `found` are the triangles that the packets of the strip
+/// before found, and of this one in the end: what a packet finds is near to what those beside it found.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
-fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], guesses: &mut Vec<u32>) {
+fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], found: &mut [[u32; LANES]]) {
     let Slab { search, bvh, grid, band, layer } = *slab;
     let scale = bvh.frame().scale();
     // A little more, so that rounding finds too much rather than too little.
@@ -62,8 +66,8 @@ fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], guesses: &mu
     let layers = samples.len() / (nx * ny);
     let columns = nx.div_ceil(PACKET[0]);
     let mut stack = Vec::with_capacity(bvh.stack_capacity());
+    let mut guesses = Vec::with_capacity(2 * LANES);
     for column in 0..columns {
-        let column = if strip.is_multiple_of(2) { column } else { columns - 1 - column };
         let mut index = [0; LANES];
         let mut points = Points::ZERO;
         for lane in 0..LANES {
@@ -81,21 +85,21 @@ fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], guesses: &mu
             squared: [(reach * reach) as f32; LANES],
             slot: [NOTHING; LANES],
         };
-        search.search(&mut packet, guesses, &mut stack);
+        guesses.clear();
+        for &slot in found[column.saturating_sub(1)..=column].as_flattened() {
+            if slot != NOTHING && !guesses.contains(&slot) {
+                guesses.push(slot);
+            }
+        }
+        search.search(&mut packet, &guesses, &mut stack);
+        found[column] = packet.slot;
         if packet.slot == [NOTHING; LANES] {
             index.iter().for_each(|&index| samples[index] = band as f32);
-            guesses.clear();
             continue;
         }
         let squared = exact_squared_distances(&points, bvh.corners(), &packet.slot);
         for lane in 0..LANES {
             samples[index[lane]] = (squared[lane].sqrt() / scale).min(band) as f32;
-        }
-        guesses.clear();
-        for &slot in &packet.slot {
-            if slot != NOTHING && !guesses.contains(&slot) {
-                guesses.push(slot);
-            }
         }
     }
 }
@@ -121,12 +125,4 @@ fn error_bound(bvh: &Bvh, largest: f64, farthest: f64) -> f64 {
     let distance = farthest * scale;
     let choice = EPSILON * (3f64.sqrt() * (largest + 1.0) + 12.0 * (distance + longest_edge2.sqrt()));
     (2.0 * choice + EPSILON * distance) / scale
-}
-
-/// The largest coordinate of a node in the unit frame.
-fn largest_coordinate(bvh: &Bvh, grid: &Grid) -> f64 {
-    let frame = bvh.frame();
-    let bounds = grid.bounds();
-    let extent = Aabb { min: frame.inward(bounds.min), max: frame.inward(bounds.max) };
-    extent.min.abs().max(extent.max.abs()).max_element()
 }

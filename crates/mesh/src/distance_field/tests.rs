@@ -334,10 +334,14 @@ fn degenerate_meshes_give_numbers() {
     let needle = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::X * 0.5], vec![[0, 1, 2], [0, 0, 1], [1, 1, 1]]);
     for mesh in [flat, needle] {
         let field = field(&mesh, 8, Padding::Cells(3));
-        assert!(field.samples().iter().all(|sample| sample.is_finite() && *sample >= 0.0));
+        let bvh = Bvh::new(&mesh.positions, &mesh.triangles).unwrap();
+        for (index, &sample) in field.samples().iter().enumerate() {
+            let expected = bvh.closest_point(field.grid().node_at(index)).distance;
+            assert!((f64::from(sample) - expected).abs() <= field.sample_error(), "{sample}, not {expected}");
+        }
         let (value, gradient) = field.sample(dvec3(0.4, 0.1, 0.2));
         // Around a sheet the spline smooths the kink over two cells of 1/8.
-        let expected = Bvh::new(&mesh.positions, &mesh.triangles).unwrap().closest_point(dvec3(0.4, 0.1, 0.2)).distance;
+        let expected = bvh.closest_point(dvec3(0.4, 0.1, 0.2)).distance;
         assert!((value - expected).abs() < 0.125, "{value} {expected}");
         assert!(gradient.is_finite() && field.centroid().is_finite());
     }
