@@ -143,8 +143,14 @@ impl SurfaceTree {
         self.leaf_of.is_empty()
     }
 
-    /// Makes the number of triangles `count`: takes in the ones that are new, and lets go those beyond it.
-    pub fn resize(&mut self, count: usize, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) {
+    /// Makes the number of triangles `count`: takes in the ones that are new, and lets go those beyond it. Where `near` knows
+    /// neighbors of a new triangle, numbers out of range among them, its place is found without a search.
+    pub fn resize(
+        &mut self,
+        count: usize,
+        corners: &impl Fn(u32) -> Option<[DVec3; 3]>,
+        near: &impl Fn(u32) -> [u32; 3],
+    ) {
         for triangle in count..self.leaf_of.len() {
             let leaf = self.leaf_of[triangle];
             self.unlink(triangle as u32);
@@ -153,15 +159,30 @@ impl SurfaceTree {
         let known = self.leaf_of.len().min(count);
         self.leaf_of.resize(count, NONE);
         self.following.resize(count, NONE);
-        for triangle in known..count {
-            self.insert(triangle as u32, corners);
+        for triangle in known as u32..count as u32 {
+            let leaf_of = |&neighbor: &u32| self.leaf_of.get(neighbor as usize).copied().filter(|&leaf| leaf != NONE);
+            let leaf = near(triangle).iter().find_map(leaf_of).unwrap_or_else(|| self.descend(triangle, corners));
+            self.link(triangle, leaf);
+            self.make_due(leaf);
+            if self.nodes[leaf as usize].count >= FULL_LEAF {
+                self.cut(leaf, corners);
+            }
         }
     }
 
-    fn insert(&mut self, triangle: u32, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) {
-        let center = corners(triangle).map_or(DVec3::ZERO, |[a, b, c]| (a + b + c) / 3.0);
+    /// The leaf that a triangle fits in best.
+    fn descend(&mut self, triangle: u32, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) -> u32 {
+        let found = corners(triangle);
+        let center = found.map_or(DVec3::ZERO, |[a, b, c]| (a + b + c) / 3.0);
+        let bounds = Aabb::of(found.into_iter().flatten());
         let mut node = 0;
-        while self.nodes[node as usize].child != NONE {
+        loop {
+            // Boxes grow at once, so that the next triangle finds its way by them.
+            let grown = &mut self.nodes[node as usize].bounds;
+            *grown = grown.union(bounds);
+            if self.nodes[node as usize].child == NONE {
+                return node;
+            }
             let child = self.nodes[node as usize].child;
             // To the box that must grow least, or the one whose center is nearer.
             let cost = |index: u32| {
@@ -170,11 +191,6 @@ impl SurfaceTree {
                 (bounds.distance(center), if off.is_finite() { off } else { f64::INFINITY })
             };
             node = if cost(child + 1) < cost(child) { child + 1 } else { child };
-        }
-        self.link(triangle, node);
-        self.make_due(node);
-        if self.nodes[node as usize].count >= FULL_LEAF {
-            self.cut(node, corners);
         }
     }
 
@@ -194,8 +210,9 @@ impl SurfaceTree {
         for (rank, (_, triangle)) in triangles.into_iter().enumerate() {
             self.link(triangle, child + u32::from(rank >= half));
         }
-        self.make_due(child);
-        self.make_due(child + 1);
+        for node in [child, child + 1] {
+            self.nodes[node as usize].bounds = self.tight_bounds(node as usize, corners);
+        }
     }
 
     fn make_due(&mut self, leaf: u32) {

@@ -246,13 +246,16 @@ impl Session {
         done.moved_vertices = moved.len();
         done.seconds.flow += watch.lap();
 
-        let mut changed = surface.triangles_around(&moved);
+        let mut changed = surface.triangles_around(&moved, &[]);
         stroke.note_moved(&changed, surface.corners.items().len());
         if let Some(options) = refine.as_ref().filter(|_| overflow.is_none()) {
             let mut pass = Pass { surface, stroke, frozen: &self.frozen, edited: &mut edited, done };
             pass.improve(&changed, options);
         }
-        surface.include(&mut changed, &edited);
+        if !edited.is_empty() {
+            edited.extend(&changed);
+            changed = surface.triangles_around(&[], &edited);
+        }
         done.seconds.refine += watch.lap();
 
         surface.update_tree(&changed);

@@ -69,7 +69,9 @@ proptest! {
         let mut alive = vec![true; rest.triangles.len()];
         {
             let corners = |triangle: u32| Some(rest.corners(triangle as usize));
-            tree.resize(rest.triangles.len(), &corners);
+            // Half of them beside another, the rest by a search.
+            let near = |triangle: u32| if triangle % 2 == 0 { [NONE, triangle.wrapping_sub(1), triangle] } else { [NONE; 3] };
+            tree.resize(rest.triangles.len(), &corners, &near);
             tree.update(&[], &corners);
         }
         let mesh = moved(&rest, seed);
@@ -79,7 +81,7 @@ proptest! {
         tree.update(&changed, &|triangle| slow.corners(triangle));
         slow.assert_agrees(&tree, point.into(), direction.into());
         // And with fewer triangles again.
-        tree.resize(200, &|triangle| slow.corners(triangle));
+        tree.resize(200, &|triangle| slow.corners(triangle), &|_| [NONE; 3]);
         tree.update(&[], &|triangle| slow.corners(triangle));
         let fewer = TriMesh::new(mesh.positions.clone(), mesh.triangles[..200].to_vec());
         Slow(&fewer, &alive[..200]).assert_agrees(&tree, point.into(), direction.into());

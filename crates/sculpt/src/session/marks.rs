@@ -1,39 +1,84 @@
-//! Sets of indices that are emptied in no time.
+//! Sets of indices that take time in proportion to what is in them, and give it back in order.
 
-/// Which of many indices have been met.
+/// A set of indices.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Marks {
-    stamps: Vec<u32>,
-    now: u32,
+    /// One bit an index.
+    words: Vec<u64>,
+    /// Words that are not zero.
+    used: Vec<u32>,
 }
 
 impl Marks {
-    /// Forgets all, and makes room for indices below `count`.
-    pub(super) fn clear(&mut self, count: usize) {
-        if self.now == u32::MAX {
-            self.stamps.fill(0);
-            self.now = 0;
+    /// Forgets all.
+    pub(super) fn clear(&mut self) {
+        for word in self.used.drain(..) {
+            self.words[word as usize] = 0;
         }
-        self.now += 1;
-        self.resize(count);
     }
 
     /// Makes room for indices below `count`, and forgets none.
     pub(super) fn resize(&mut self, count: usize) {
-        if self.stamps.len() < count {
-            self.stamps.resize(count, 0);
+        let words = count.div_ceil(64);
+        if self.words.len() < words {
+            self.words.resize(words, 0);
         }
     }
 
     /// Takes `index` in; whether it was not there.
     #[inline]
     pub(super) fn insert(&mut self, index: u32) -> bool {
-        std::mem::replace(&mut self.stamps[index as usize], self.now) != self.now
+        let word = &mut self.words[index as usize / 64];
+        let bit = 1 << (index % 64);
+        let is_new = *word & bit == 0;
+        if *word == 0 {
+            self.used.push(index / 64);
+        }
+        *word |= bit;
+        is_new
+    }
+
+    /// Takes all of `indices` in.
+    pub(super) fn extend(&mut self, indices: impl IntoIterator<Item = u32>) {
+        for index in indices {
+            self.insert(index);
+        }
     }
 
     /// Whether `index` is there.
     #[inline]
     pub(super) fn contains(&self, index: u32) -> bool {
-        self.now != 0 && self.stamps.get(index as usize) == Some(&self.now)
+        self.words.get(index as usize / 64).is_some_and(|word| word >> (index % 64) & 1 == 1)
+    }
+
+    /// All indices in ascending order. They are there until the set is [cleared](Self::clear).
+    pub(super) fn to_sorted(&mut self) -> Vec<u32> {
+        self.used.sort_unstable();
+        let mut indices = Vec::with_capacity(8 * self.used.len());
+        for &word in &self.used {
+            let mut bits = self.words[word as usize];
+            while bits != 0 {
+                indices.push(64 * word + bits.trailing_zeros());
+                bits &= bits - 1;
+            }
+        }
+        indices
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn indices_come_back_once_and_in_order() {
+        let mut marks = Marks::default();
+        marks.resize(1000);
+        assert!([999, 3, 64, 63, 500].into_iter().all(|index| marks.insert(index)));
+        assert!(!marks.insert(64));
+        assert_eq!(marks.to_sorted(), [3, 63, 64, 500, 999]);
+        assert!(marks.contains(500) && !marks.contains(501) && !marks.contains(5000));
+        marks.clear();
+        assert!(marks.to_sorted().is_empty() && !marks.contains(500));
     }
 }

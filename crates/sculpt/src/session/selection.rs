@@ -7,10 +7,13 @@ use super::surface::Surface;
 impl Surface {
     /// The triangles that may touch a box, and some more.
     pub(super) fn triangles_in(&mut self, bounds: Aabb) -> Vec<u32> {
-        let mut found = Vec::new();
-        self.tree.visit_box(bounds, |triangle| found.push(triangle));
-        found.sort_unstable();
-        found
+        let marks = &mut self.triangle_marks;
+        marks.clear();
+        marks.resize(self.corners.items().len());
+        self.tree.visit_box(bounds, |triangle| {
+            marks.insert(triangle);
+        });
+        marks.to_sorted()
     }
 
     /// The vertices of `triangles` that lie in a box.
@@ -23,33 +26,27 @@ impl Surface {
 
     /// The vertices of those of `triangles` that are there.
     pub(super) fn vertices_of(&mut self, triangles: &[u32]) -> Vec<u32> {
-        self.vertex_marks.clear(self.positions.items().len());
-        let mut vertices = Vec::with_capacity(triangles.len());
+        let marks = &mut self.vertex_marks;
+        marks.clear();
+        marks.resize(self.positions.items().len());
         for &triangle in triangles {
             let triangle = &self.topology.triangles()[triangle as usize];
             if triangle.is_alive() {
-                vertices.extend(triangle.vertices.iter().filter(|&&vertex| self.vertex_marks.insert(vertex)));
+                marks.extend(triangle.vertices);
             }
         }
-        vertices.sort_unstable();
-        vertices
+        marks.to_sorted()
     }
 
-    /// The triangles at `vertices`.
-    pub(super) fn triangles_around(&mut self, vertices: &[u32]) -> Vec<u32> {
-        self.triangle_marks.clear(self.corners.items().len());
-        let mut triangles = Vec::with_capacity(2 * vertices.len());
+    /// The triangles at `vertices`, and `others`.
+    pub(super) fn triangles_around(&mut self, vertices: &[u32], others: &[u32]) -> Vec<u32> {
+        let marks = &mut self.triangle_marks;
+        marks.clear();
+        marks.resize(self.corners.items().len());
         for &vertex in vertices {
-            let fan = self.topology.fan(vertex).map(|half_edge| half_edge / 3);
-            triangles.extend(fan.filter(|&triangle| self.triangle_marks.insert(triangle)));
+            marks.extend(self.topology.fan(vertex).map(|half_edge| half_edge / 3));
         }
-        triangles.sort_unstable();
-        triangles
-    }
-
-    /// Takes `others` into `triangles`, which [`triangles_around`](Self::triangles_around) has just found.
-    pub(super) fn include(&mut self, triangles: &mut Vec<u32>, others: &[u32]) {
-        self.triangle_marks.resize(self.corners.items().len());
-        triangles.extend(others.iter().filter(|&&triangle| self.triangle_marks.insert(triangle)));
+        marks.extend(others.iter().copied());
+        marks.to_sorted()
     }
 }

@@ -46,8 +46,6 @@ pub(super) struct Segment {
 
 impl ActiveStroke {
     pub(super) fn new(tool: Arc<SessionTool>, refine: Option<InteractiveRefinement>, alive: usize) -> Self {
-        let mut moved_marks = Marks::default();
-        moved_marks.clear(0);
         Self {
             tool,
             refine,
@@ -58,7 +56,7 @@ impl ActiveStroke {
             alive,
             inserted: Vec::new(),
             moved: Vec::new(),
-            moved_marks,
+            moved_marks: Marks::default(),
             splits: CompensatedSum::default(),
             remeshing: CompensatedSum::default(),
             remeshed: 0.0,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use isochore_mesh::{Delta, EditDelta, EditMesh, Journaled, Origin, SurfaceTree, TriMesh};
+use isochore_mesh::{Delta, EditDelta, EditMesh, Journaled, NONE, Origin, SurfaceTree, TriMesh};
 
 use super::{
     NormalWeights,
@@ -178,21 +178,11 @@ impl Surface {
 
         // The boxes: around what moved, and what was edited.
         let now = self.corners.items().len();
-        self.triangle_marks.clear(now);
-        let mut changed = Vec::new();
-        let mut push = |triangle: u32, marks: &mut Marks| {
-            if (triangle as usize) < now.min(triangles) && marks.insert(triangle) {
-                changed.push(triangle);
-            }
-        };
-        for vertex in delta.positions.indices().filter(|&vertex| (vertex as usize) < vertices) {
-            for half_edge in self.topology.fan(vertex) {
-                push(half_edge / 3, &mut self.triangle_marks);
-            }
-        }
-        for triangle in delta.topology.triangles.indices() {
-            push(triangle, &mut self.triangle_marks);
-        }
+        let moved: Vec<u32> = delta.positions.indices().filter(|&vertex| (vertex as usize) < vertices).collect();
+        let edited: Vec<u32> =
+            delta.topology.triangles.indices().filter(|&triangle| (triangle as usize) < now).collect();
+        let mut changed = self.triangles_around(&moved, &edited);
+        changed.retain(|&triangle| (triangle as usize) < triangles);
         self.update_tree(&changed);
     }
 
@@ -203,7 +193,9 @@ impl Surface {
             let triangle = &triangles[triangle as usize];
             triangle.is_alive().then(|| triangle.vertices.map(|vertex| positions[vertex as usize]))
         };
-        self.tree.resize(triangles.len(), &corners);
+        let near =
+            |triangle: u32| triangles[triangle as usize].twins.map(|twin| if twin == NONE { NONE } else { twin / 3 });
+        self.tree.resize(triangles.len(), &corners, &near);
         self.tree.update(changed, &corners);
     }
 

@@ -1,0 +1,121 @@
+use glam::{DVec2, DVec4};
+use isochore_mesh::{TriMesh, primitives::icosphere};
+
+use super::*;
+
+/// A ball with texture coordinates that break along a meridian, two materials, colors and skin weights.
+pub(crate) fn painted_ball() -> TriMesh {
+    let mut mesh = icosphere(1.0, 3);
+    let around = |p: DVec3| libm::atan2(p.y, p.x) / std::f64::consts::TAU + 0.5;
+    let uv = |triangle: &[u32; 3]| {
+        let corners = triangle.map(|vertex| mesh.positions[vertex as usize]);
+        let us = corners.map(around);
+        let breaks = us.iter().cloned().fold(0.0, f64::max) - us.iter().cloned().fold(1.0, f64::min) > 0.5;
+        [0, 1, 2].map(|i| DVec2::new(if breaks && us[i] < 0.5 { us[i] + 1.0 } else { us[i] }, corners[i].z))
+    };
+    mesh.corner.uvs = vec![mesh.triangles.iter().map(uv).collect()];
+    mesh.materials = vec!["north".to_owned(), "south".to_owned()];
+    let south =
+        |triangle: &[u32; 3]| u32::from(triangle.iter().map(|&v| mesh.positions[v as usize].z).sum::<f64>() < 0.0);
+    mesh.triangle_materials = mesh.triangles.iter().map(south).collect();
+    mesh.vertex.colors =
+        mesh.positions.iter().map(|p| DVec4::new(0.5 + 0.5 * p.x, 0.5 + 0.5 * p.y, 0.5, 1.0)).collect();
+    let skin = |p: &DVec3| {
+        let weight = 0.5 + 0.5 * p.z;
+        vec![((p.x > 0.0) as u32, weight), (2, 1.0 - weight)]
+    };
+    mesh.vertex.skin = mesh.positions.iter().map(skin).collect();
+    mesh
+}
+
+#[test]
+fn render_vertices_follow_their_vertices_and_seams_stay_closed() {
+    let mut session = open(painted_ball());
+    let opened = session.opened().clone();
+    let vertices = opened.positions.len();
+    assert!(session.buffers().positions.len() > vertices, "a seam needs more render vertices");
+    for round in 0..12 {
+        make(&mut session, &brush(), &refined(0.1), &arc(0.5 * f64::from(round), 7));
+    }
+    assert_sound(&session);
+    let buffers = session.buffers();
+    let mut inserted = 0;
+    for (triangle, corners) in buffers.indices.iter().enumerate() {
+        let Some(expected) = session.triangle(triangle as u32) else {
+            assert_eq!(*corners, [0; 3]);
+            continue;
+        };
+        assert_eq!(corners.map(|corner| session.vertex_of(corner)), expected);
+        for corner in *corners {
+            let vertex = session.vertex_of(corner);
+            let position = session.positions()[vertex as usize];
+            assert_eq!(buffers.positions[corner as usize], position.as_vec3().to_array());
+            // Attributes are those of the origin, interpolated once.
+            let origin = session.origin_of(corner).unwrap();
+            assert_eq!(buffers.uvs[0][corner as usize], opened.uv_at(0, &origin).as_vec2().to_array());
+            assert_eq!(buffers.colors[corner as usize], opened.color_at(&origin).unwrap().as_vec4().to_array());
+            assert!((origin.weights.element_sum() - 1.0).abs() < 1e-15 && origin.weights.min_element() >= 0.0);
+            inserted += usize::from(vertex as usize >= vertices);
+        }
+        // Texture coordinates nowhere jump from one end of the map to the other within a triangle.
+        let us = corners.map(|corner| buffers.uvs[0][corner as usize][0]);
+        let spread = us.iter().cloned().fold(0.0, f32::max) - us.iter().cloned().fold(2.0, f32::min);
+        let is_polar =
+            expected.iter().any(|&vertex| vertex < vertices as u32 && opened.positions[vertex as usize].z.abs() > 0.9);
+        assert!(spread < 0.5 || is_polar, "triangle {triangle}: {us:?}");
+    }
+    assert!(inserted > 1000, "{inserted}");
+}
+
+#[test]
+fn an_exported_mesh_carries_everything() {
+    let mut session = open(painted_ball());
+    for round in 0..8 {
+        make(&mut session, &brush(), &refined(0.1), &arc(0.7 * f64::from(round), 7));
+    }
+    let exported = session.export(true);
+    let (mesh, opened) = (&exported.mesh, session.opened());
+    assert_eq!(mesh.triangle_materials.len(), mesh.triangles.len());
+    assert_eq!(mesh.materials, opened.materials);
+    for (index, &vertex) in exported.vertices.iter().enumerate() {
+        let skin = &mesh.vertex.skin[index];
+        assert!(skin.len() <= 2);
+        assert!((skin.iter().map(|(_, weight)| weight).sum::<f64>() - 1.0).abs() < 1e-12);
+        if (vertex as usize) < opened.positions.len() {
+            assert_eq!(skin, &opened.vertex.skin[vertex as usize]);
+            assert_eq!(mesh.vertex.colors[index], opened.vertex.colors[vertex as usize]);
+        }
+    }
+    // The lock gives back the volume of the mesh as opened, to rounding.
+    assert!(exported.lock.is_some());
+    assert!((mesh.volume() / opened.volume() - 1.0).abs() < 1e-14);
+    let unlocked = session.export(false).mesh;
+    assert!((unlocked.volume() / opened.volume() - 1.0).abs() > 1e-9);
+    assert!((unlocked.volume() / session.volume().unwrap() - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_session_that_did_nothing_exports_what_it_opened() {
+    let mut mesh = painted_ball();
+    mesh.positions.push(DVec3::splat(3.0));
+    mesh.vertex.colors.push(DVec4::ONE);
+    mesh.vertex.skin.push(vec![(1, 1.0)]);
+    let mut session = open(mesh.clone());
+    assert_eq!(session.export(true).mesh, mesh);
+    assert_eq!(session.export(false).mesh, mesh);
+    make(&mut session, &brush(), &refined(0.05), &arc(0.0, 7));
+    assert!(session.undo().unwrap());
+    assert_eq!(session.export(false).mesh, mesh);
+}
+
+#[test]
+fn a_vertex_without_triangles_is_carried_too() {
+    let mut mesh = icosphere(1.0, 3);
+    mesh.positions.push(DVec3::new(1.05, 0.1, 0.0));
+    let mut session = open(mesh.clone());
+    make(&mut session, &brush(), &refined(0.1), &arc(0.0, 5));
+    let loose = mesh.positions.len() - 1;
+    assert!(session.positions()[loose].distance(mesh.positions[loose]) > 0.01);
+    assert_eq!(session.buffers().positions[loose], session.positions()[loose].as_vec3().to_array());
+    assert!(session.is_alive(loose as u32));
+}

@@ -1,0 +1,113 @@
+//! The sculpting session.
+
+mod attributes;
+mod buffers;
+mod queries;
+mod random_calls;
+mod refinement;
+mod replay;
+mod undo;
+
+use std::sync::Arc;
+
+use glam::{DQuat, DVec3};
+use isochore_field::{Pose, rotation_from_vector};
+use isochore_mesh::{Silent, TriMesh, primitives::icosphere};
+use isochore_sculpt::{
+    Meshes,
+    recipe::{Capsule, Profile, Sphere, Tool, ToolShape},
+    session::{InteractiveRefinement, Session, SessionOptions, SessionTool, StrokeOptions},
+};
+
+/// A brush of radius 0.2 that reaches 0.25 beyond.
+fn brush() -> Arc<SessionTool> {
+    let shape = ToolShape::Sphere(Sphere { radius: 0.2 });
+    let tool = Tool { shape, support: 0.25, profile: Profile::Quintic, free_form: 0.0 };
+    Arc::new(SessionTool::new("brush", tool, &Meshes::new(), &Silent).unwrap())
+}
+
+/// A longer tool, with another profile.
+fn rod() -> Arc<SessionTool> {
+    let shape = ToolShape::Capsule(Capsule { radius: 0.1, half_length: 0.3 });
+    let tool = Tool { shape, support: 0.3, profile: Profile::Contact, free_form: 0.0 };
+    Arc::new(SessionTool::new("rod", tool, &Meshes::new(), &Silent).unwrap())
+}
+
+fn open(mesh: TriMesh) -> Session {
+    Session::open(mesh, SessionOptions::default()).unwrap()
+}
+
+fn ball() -> Session {
+    open(icosphere(1.0, 3))
+}
+
+/// Edges longer than `longest` are split, as long as there are few triangles: strokes that fold the surface over and over make it
+/// grow without end.
+fn refined(longest: f64) -> StrokeOptions {
+    let refine =
+        InteractiveRefinement { longest: Some(longest), max_triangles: 12_000, ..InteractiveRefinement::default() };
+    StrokeOptions { refine: Some(refine) }
+}
+
+const UNREFINED: StrokeOptions = StrokeOptions { refine: None };
+
+/// Poses along an arc over the unit sphere, in and out of it, turning on the way.
+fn arc(start: f64, count: usize) -> Vec<Pose> {
+    let pose = |index: usize| {
+        let angle = start + 0.06 * index as f64;
+        let radius = 1.15 - 0.02 * index as f64;
+        let at = DVec3::new(libm::cos(angle), libm::sin(angle), 0.3 * libm::sin(3.0 * start)) * radius;
+        Pose { rotation: rotation_from_vector(DVec3::new(0.1, 0.2, 0.05) * index as f64), translation: at }
+    };
+    (0..count).map(pose).collect()
+}
+
+fn make(session: &mut Session, tool: &Arc<SessionTool>, options: &StrokeOptions, poses: &[Pose]) {
+    session.begin_stroke(tool, options.clone()).unwrap();
+    for (index, pose) in poses.iter().enumerate() {
+        session.move_to(pose, index as f64).unwrap();
+    }
+    session.end_stroke().unwrap();
+}
+
+/// All that a host can see, bit for bit.
+#[derive(Debug, Clone, PartialEq)]
+struct Snapshot {
+    positions: Vec<[u64; 3]>,
+    triangles: Vec<Option<[u32; 3]>>,
+    render_positions: Vec<[u32; 3]>,
+    normals: Vec<[u32; 3]>,
+    uvs: Vec<Vec<[f32; 2]>>,
+    colors: Vec<[f32; 4]>,
+    indices: Vec<[u32; 3]>,
+    volume: Option<u64>,
+}
+
+fn snapshot(session: &Session) -> Snapshot {
+    let buffers = session.buffers();
+    let bits = |values: &[[f32; 3]]| values.iter().map(|value| value.map(f32::to_bits)).collect();
+    Snapshot {
+        positions: session.positions().iter().map(|position| position.to_array().map(f64::to_bits)).collect(),
+        triangles: (0..buffers.indices.len() as u32).map(|triangle| session.triangle(triangle)).collect(),
+        render_positions: bits(buffers.positions),
+        normals: bits(buffers.normals),
+        uvs: buffers.uvs.to_vec(),
+        colors: buffers.colors.to_vec(),
+        indices: buffers.indices.to_vec(),
+        volume: session.volume().map(f64::to_bits),
+    }
+}
+
+/// The surface must be closed, oriented, without branches, and finite.
+fn assert_sound(session: &Session) {
+    let check = session.export(false).mesh.check();
+    assert!(check.is_closed() && check.is_oriented() && check.is_manifold() && check.is_valid(), "{check:?}");
+    assert!(check.duplicate_triangles.is_empty(), "{check:?}");
+}
+
+#[test]
+fn a_session_can_be_handed_to_another_thread() {
+    fn is_send<T: Send>() {}
+    is_send::<Session>();
+    assert_eq!(Pose::IDENTITY.rotation, DQuat::IDENTITY);
+}

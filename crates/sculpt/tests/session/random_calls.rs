@@ -1,0 +1,158 @@
+use isochore_mesh::CompensatedSum;
+
+use super::*;
+
+/// Numbers without a pattern (D. Lehmer's generator with the multiplier of L'Ecuyer's table, 1999).
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(0xd134_2543_de82_ef95).wrapping_add(1);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.next() * count as f64) as usize
+    }
+
+    fn direction(&mut self) -> DVec3 {
+        DVec3::new(self.next() - 0.5, self.next() - 0.5, self.next() - 0.5).normalize_or(DVec3::X)
+    }
+}
+
+/// A session with what it should be.
+struct Checked {
+    session: Session,
+    numbers: Numbers,
+    tools: [Arc<SessionTool>; 2],
+    /// States that undo should lead to, and redo.
+    done: Vec<Snapshot>,
+    undone: Vec<Snapshot>,
+    now: Snapshot,
+    pose: Pose,
+    time: f64,
+    strokes: usize,
+    edits: [usize; 3],
+}
+
+impl Checked {
+    fn call(&mut self) {
+        let is_under_way = self.session.is_stroke_under_way();
+        match self.numbers.below(40) {
+            0..=30 if is_under_way => self.move_on(),
+            31..=32 if is_under_way => {
+                self.session.cancel_stroke().unwrap();
+                assert_eq!(snapshot(&self.session), self.now);
+            }
+            33..=35 if is_under_way => self.end(),
+            0..=20 => self.begin(),
+            21..=28 => self.step(Session::undo, true),
+            29..=32 => self.step(Session::redo, false),
+            33 => drop(self.session.take_changes()),
+            34 => {
+                let direction = self.numbers.direction();
+                assert!(self.session.pick(5.0 * direction, -direction).is_some());
+            }
+            35 => assert_eq!(self.session.log().strokes.len(), self.done.len()),
+            36 => {
+                let frozen: Vec<u32> = (0..self.numbers.below(3)).map(|_| self.numbers.below(300) as u32).collect();
+                self.session.freeze_edges(&frozen);
+            }
+            37 => drop(self.session.move_to(&Pose::at(DVec3::NAN), self.time).unwrap_err()),
+            _ => assert!(self.session.closest_point(self.pose.translation).is_some()),
+        }
+    }
+
+    fn begin(&mut self) {
+        if self.session.is_stroke_under_way() {
+            return;
+        }
+        let refine = InteractiveRefinement {
+            longest: Some(0.1 + 0.2 * self.numbers.next()),
+            collapse: 0.4 * self.numbers.next(),
+            flip: self.numbers.below(4) > 0,
+            max_triangles: 6000,
+            keep: Vec::new(),
+        };
+        let options = StrokeOptions { refine: (self.numbers.below(4) > 0).then_some(refine) };
+        self.session.begin_stroke(&self.tools[self.strokes % 2], options).unwrap();
+        self.strokes += 1;
+        self.pose = Pose::at(self.numbers.direction() * (0.8 + 0.5 * self.numbers.next()));
+        self.session.move_to(&self.pose, self.time).unwrap();
+    }
+
+    fn move_on(&mut self) {
+        let turn = self.numbers.direction() * self.numbers.next();
+        let shift = self.numbers.direction() * (0.2 * self.numbers.next());
+        // Back towards the surface where it has gone away.
+        let pull = self.pose.translation.normalize_or_zero() - self.pose.translation;
+        self.pose.translation += shift + 0.2 * pull;
+        self.pose.rotation = rotation_from_vector(turn) * self.pose.rotation;
+        self.time += self.numbers.next();
+        self.session.move_to(&self.pose, self.time).unwrap();
+        assert!(self.session.positions().iter().all(|position| position.is_finite()));
+    }
+
+    fn end(&mut self) {
+        let before = self.session.volume().unwrap();
+        let receipt = self.session.end_stroke().unwrap();
+        self.edits[0] += receipt.inserted_vertices;
+        self.edits[1] += receipt.removed_vertices;
+        self.edits[2] += receipt.flipped_edges;
+        if receipt.moves == 0 {
+            assert_eq!(snapshot(&self.session), self.now);
+            return;
+        }
+        assert_sound(&self.session);
+        let (volume, after) = (receipt.volume.unwrap(), self.session.export(false).mesh.volume());
+        let mut expected = CompensatedSum::default();
+        [before, volume.total()].into_iter().for_each(|part| expected.add(part));
+        // Each stroke so far has added its bound on rounding; the whole sum rounds by some units.
+        let tolerance = volume.rounding * (self.done.len() + 1) as f64 + 1e-13;
+        assert!((after - expected.value()).abs() < tolerance, "{volume:?}: {after} {}", expected.value());
+        self.undone.clear();
+        let now = snapshot(&self.session);
+        self.done.push(std::mem::replace(&mut self.now, now));
+    }
+
+    fn step(&mut self, step: fn(&mut Session) -> Result<bool, isochore_sculpt::session::SessionError>, is_undo: bool) {
+        if self.session.is_stroke_under_way() {
+            assert!(step(&mut self.session).is_err());
+            return;
+        }
+        let (from, to) = if is_undo { (&mut self.done, &mut self.undone) } else { (&mut self.undone, &mut self.done) };
+        let expected = from.pop();
+        assert_eq!(step(&mut self.session).unwrap(), expected.is_some());
+        if let Some(expected) = expected {
+            to.push(std::mem::replace(&mut self.now, expected));
+        }
+        assert_eq!(snapshot(&self.session), self.now);
+        assert_sound(&self.session);
+    }
+}
+
+#[test]
+fn ten_thousand_calls_leave_a_sound_surface() {
+    let mut edits = [0; 3];
+    for seed in 0..5 {
+        let session = open(if seed % 2 == 0 { icosphere(1.0, 2) } else { super::attributes::painted_ball() });
+        let mut checked = Checked {
+            now: snapshot(&session),
+            session,
+            numbers: Numbers(seed + 1),
+            tools: [brush(), rod()],
+            done: Vec::new(),
+            undone: Vec::new(),
+            pose: Pose::IDENTITY,
+            time: 0.0,
+            strokes: 0,
+            edits: [0; 3],
+        };
+        for _ in 0..2000 {
+            checked.call();
+        }
+        assert!(checked.strokes > 50);
+        (0..3).for_each(|kind| edits[kind] += checked.edits[kind]);
+    }
+    assert!(edits.iter().all(|&count| count > 20), "{edits:?}");
+}

@@ -1,0 +1,163 @@
+use isochore_mesh::{TriMesh, primitives::box_mesh};
+use isochore_sculpt::session::{OpenError, SessionError, StrokeReceipt};
+
+use super::*;
+
+fn stroke(session: &mut Session, tool: &Arc<SessionTool>, options: StrokeOptions, poses: &[Pose]) -> StrokeReceipt {
+    session.begin_stroke(tool, options).unwrap();
+    for (index, pose) in poses.iter().enumerate() {
+        session.move_to(pose, index as f64).unwrap();
+    }
+    session.end_stroke().unwrap()
+}
+
+/// Straight down on the top of a box of half-extent one.
+fn press(depth: f64) -> Vec<Pose> {
+    (0..=20).map(|index| Pose::at(DVec3::new(0.2, 0.1, 1.3 - depth * f64::from(index) / 20.0))).collect()
+}
+
+#[test]
+fn a_brush_shapes_a_coarse_box() {
+    let mut session = open(box_mesh(DVec3::ONE, [1, 1, 1]));
+    let receipt = stroke(&mut session, &brush(), StrokeOptions::default(), &press(0.3));
+    assert_sound(&session);
+    assert!(receipt.inserted_vertices > 100 && receipt.touched_vertices == 0, "{receipt:?}");
+    // The lowest point follows the tool down, short of it by the part of the field that has not carried it.
+    let lowest = session.positions().iter().filter(|p| p.z > 0.0).map(|p| p.z).fold(f64::INFINITY, f64::min);
+    assert!(lowest < 0.9, "{lowest}");
+    // The other side is as coarse as before, but for halves of the edges that reach up to the tool.
+    let far = |p: &&DVec3| p.z < 0.0;
+    assert_eq!(session.positions().iter().filter(far).count(), 6);
+}
+
+#[test]
+fn receipts_tell_what_became_of_the_volume() {
+    let mut session = ball();
+    let mut tools = [brush(), rod()].into_iter().cycle();
+    for round in 0..10 {
+        let tool = tools.next().unwrap();
+        let before = session.export(false).mesh.volume();
+        let receipt = stroke(&mut session, &tool, refined(0.1), &arc(0.9 * f64::from(round), 12));
+        let volume = receipt.volume.unwrap();
+        let after = session.export(false).mesh.volume();
+        // The whole sums round by some units of the whole volume.
+        let tolerance = volume.rounding + 1e-14 * before;
+        assert!((volume.total() - (after - before)).abs() < tolerance, "{volume:?} {}", after - before);
+        assert!(volume.rounding < 1e-9 * before, "{volume:?}");
+        assert!((session.volume().unwrap() - after).abs() < 1e-12 * before);
+        assert!(volume.splits != 0.0 || receipt.is_limited);
+    }
+}
+
+#[test]
+fn finer_limits_change_less_volume() {
+    let bare = |longest: f64| {
+        let mut session = ball();
+        let options = InteractiveRefinement { longest: Some(longest), ..InteractiveRefinement::default() };
+        let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(options) }, &press(0.35));
+        receipt.volume.unwrap().bare().abs()
+    };
+    // The facet error falls with the square of the length; what counts is that three halvings take most of it.
+    let [coarse, fine] = [0.16, 0.02].map(bare);
+    assert!(fine < coarse / 10.0, "{coarse:e} {fine:e}");
+}
+
+#[test]
+fn without_edits_nothing_is_booked_as_remeshing() {
+    let mut session = ball();
+    let volume = stroke(&mut session, &brush(), UNREFINED, &arc(0.0, 9)).volume.unwrap();
+    assert_eq!((volume.splits, volume.remeshing), (0.0, 0.0));
+    assert_ne!(volume.flow, 0.0);
+}
+
+#[test]
+fn squeezed_edges_collapse_and_bad_pairs_flip() {
+    let mut session = ball();
+    let back_and_forth: Vec<Pose> =
+        [press(0.5), press(0.5).into_iter().rev().collect()].concat().into_iter().cycle().take(160).collect();
+    let options = InteractiveRefinement { longest: Some(0.06), collapse: 0.4, ..InteractiveRefinement::default() };
+    let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(options) }, &back_and_forth);
+    assert!(receipt.removed_vertices > 0 && receipt.flipped_edges > 0, "{receipt:?}");
+    assert_ne!(receipt.volume.unwrap().remeshing, 0.0);
+    assert_sound(&session);
+    let alive = (0..session.vertex_count() as u32).filter(|&vertex| session.is_alive(vertex)).count();
+    assert_eq!(alive, session.opened().positions.len() + receipt.inserted_vertices - receipt.removed_vertices);
+}
+
+#[test]
+fn the_limit_on_triangles_holds() {
+    let mut session = ball();
+    let most = session.triangle_count() + 50;
+    let options =
+        InteractiveRefinement { longest: Some(0.02), max_triangles: most, ..InteractiveRefinement::default() };
+    let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(options) }, &press(0.3));
+    assert!(receipt.is_limited && session.triangle_count() <= most);
+    assert_sound(&session);
+}
+
+#[test]
+fn what_is_kept_or_frozen_stays() {
+    let keep = (DVec3::Z, 10.0);
+    let mut session = ball();
+    let options = InteractiveRefinement { longest: Some(0.05), keep: vec![keep], ..InteractiveRefinement::default() };
+    let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(options) }, &press(0.3));
+    assert_eq!((receipt.inserted_vertices, receipt.removed_vertices, receipt.flipped_edges), (0, 0, 0));
+
+    let mut session = ball();
+    let north: Vec<u32> =
+        (0..session.vertex_count() as u32).filter(|&v| session.positions()[v as usize].z > 0.0).collect();
+    session.freeze_edges(&north);
+    let at = |session: &Session, triangle: u32| session.triangle(triangle);
+    let before: Vec<_> = (0..session.triangle_count() as u32).map(|triangle| at(&session, triangle)).collect();
+    make(&mut session, &brush(), &refined(0.05), &press(0.3));
+    make(&mut session, &brush(), &refined(0.05), &arc(0.0, 9));
+    let mut stayed = 0;
+    for (triangle, before) in before.iter().enumerate() {
+        if before.unwrap().iter().all(|vertex| north.contains(vertex)) {
+            assert_eq!(at(&session, triangle as u32), *before);
+            stayed += 1;
+        }
+    }
+    assert!(stayed > 100 && session.vertex_count() > session.opened().positions.len());
+    assert_sound(&session);
+}
+
+#[test]
+fn an_open_surface_keeps_its_boundary() {
+    let mut mesh = icosphere(1.0, 3);
+    let whole = mesh.triangles.clone();
+    mesh.triangles.retain(|triangle| triangle.iter().any(|&vertex| mesh.positions[vertex as usize].x < 0.9));
+    assert!(mesh.triangles.len() < whole.len());
+    let mut session = open(mesh);
+    let receipt = stroke(&mut session, &brush(), refined(0.08), &arc(-0.2, 12));
+    assert_eq!((receipt.volume, session.volume()), (None, None));
+    let check = session.export(true).mesh.check();
+    assert!(check.is_oriented() && check.is_manifold() && !check.is_closed());
+    let again = open(session.export(false).mesh);
+    assert_eq!(again.triangle_count(), session.triangle_count());
+}
+
+#[test]
+fn what_cannot_be_edited_is_refused_by_name() {
+    let refuse = |triangles: Vec<[u32; 3]>| {
+        let positions = (0..6).map(|i| DVec3::new(f64::from(i), f64::from(i * i), 1.0)).collect();
+        Session::open(TriMesh::new(positions, triangles), SessionOptions::default()).unwrap_err()
+    };
+    assert!(matches!(refuse(vec![[0, 1, 9]]), OpenError::Mesh(_)));
+    let error = refuse(vec![[0, 1, 2], [1, 0, 3], [0, 1, 4]]);
+    assert!(error.to_string().contains("the edge between vertices 0 and 1"), "{error}");
+    let mut mesh = icosphere(1.0, 1);
+    mesh.vertex.colors = vec![glam::DVec4::ONE; 3];
+    let error = Session::open(mesh, SessionOptions::default()).unwrap_err();
+    assert_eq!(error, OpenError::AttributeCount { attribute: "vertex colors", found: 3, expected: 42 });
+    let options = SessionOptions { step: 2.0, ..SessionOptions::default() };
+    assert!(matches!(Session::open(icosphere(1.0, 1), options), Err(OpenError::Options(_))));
+    for refine in [
+        InteractiveRefinement { longest: Some(0.0), ..Default::default() },
+        InteractiveRefinement { collapse: 0.9, ..Default::default() },
+        InteractiveRefinement { keep: vec![(DVec3::NAN, 1.0)], ..Default::default() },
+    ] {
+        let begun = ball().begin_stroke(&brush(), StrokeOptions { refine: Some(refine) });
+        assert!(matches!(begun, Err(SessionError::Refinement(_))));
+    }
+}

@@ -1,0 +1,93 @@
+use isochore_sculpt::session::SessionOptions;
+
+use super::*;
+
+#[test]
+fn a_hundred_strokes_undone_and_redone_give_the_same_bits() {
+    let mut session = ball();
+    let mut states = vec![snapshot(&session)];
+    for index in 0..100 {
+        let tool = if index % 3 == 0 { rod() } else { brush() };
+        make(&mut session, &tool, &refined(0.12), &arc(0.7 * f64::from(index), 6));
+        states.push(snapshot(&session));
+    }
+    assert_sound(&session);
+    assert!(session.vertex_count() > session.opened().positions.len() + 500);
+    for state in states.iter().rev().skip(1) {
+        assert!(session.undo().unwrap());
+        assert_eq!(snapshot(&session), *state);
+    }
+    assert!(!session.undo().unwrap());
+    for state in &states[1..] {
+        assert!(session.redo().unwrap());
+        assert_eq!(snapshot(&session), *state);
+    }
+    assert!(!session.redo().unwrap());
+    // What follows does not depend on what was undone and redone, nor on what was canceled.
+    let mut other = ball();
+    for index in 0..100 {
+        let tool = if index % 3 == 0 { rod() } else { brush() };
+        make(&mut other, &tool, &refined(0.12), &arc(0.7 * f64::from(index), 6));
+    }
+    session.begin_stroke(&brush(), refined(0.05)).unwrap();
+    arc(2.0, 5).iter().for_each(|pose| assert!(session.move_to(pose, 0.0).is_ok()));
+    session.cancel_stroke().unwrap();
+    for session in [&mut session, &mut other] {
+        make(session, &brush(), &refined(0.07), &arc(1.0, 6));
+    }
+    assert_eq!(snapshot(&session), snapshot(&other));
+}
+
+#[test]
+fn a_canceled_stroke_leaves_no_bit() {
+    let mut session = ball();
+    make(&mut session, &brush(), &refined(0.1), &arc(0.0, 5));
+    let before = snapshot(&session);
+    session.begin_stroke(&rod(), refined(0.06)).unwrap();
+    for pose in arc(0.2, 9) {
+        session.move_to(&pose, 0.0).unwrap();
+    }
+    assert_ne!(snapshot(&session), before);
+    session.cancel_stroke().unwrap();
+    assert_eq!(snapshot(&session), before);
+    assert_eq!(session.log().strokes.len(), 1);
+}
+
+#[test]
+fn the_oldest_strokes_are_forgotten_first_and_the_log_keeps_them() {
+    let mut session = ball();
+    make(&mut session, &brush(), &UNREFINED, &arc(0.0, 5));
+    let one = session.history().bytes;
+    let mut session =
+        Session::open(icosphere(1.0, 3), SessionOptions { undo_bytes: 3 * one + one / 2, ..SessionOptions::default() })
+            .unwrap();
+    let mut forgotten = 0;
+    for index in 0..8 {
+        session.begin_stroke(&brush(), UNREFINED).unwrap();
+        arc(0.01 * f64::from(index), 5).iter().for_each(|pose| assert!(session.move_to(pose, 0.0).is_ok()));
+        forgotten += session.end_stroke().unwrap().forgotten_strokes;
+    }
+    let history = session.history();
+    assert_eq!((history.forgotten, history.undoable + history.forgotten), (forgotten, 8));
+    assert!(history.bytes <= 3 * one + one / 2 && history.undoable >= 2, "{history:?}");
+    while session.undo().unwrap() {}
+    assert_eq!(session.log().strokes.len(), forgotten);
+    assert_eq!(session.history().redoable, history.undoable);
+    // A new stroke takes the place of those undone.
+    make(&mut session, &brush(), &UNREFINED, &arc(1.0, 3));
+    assert_eq!(session.history().redoable, 0);
+}
+
+#[test]
+fn memory_of_a_stroke_is_in_proportion_to_what_it_touched() {
+    let bytes = |subdivisions| {
+        let mut session = open(icosphere(1.0, subdivisions));
+        session.begin_stroke(&brush(), UNREFINED).unwrap();
+        arc(0.0, 5).iter().for_each(|pose| assert!(session.move_to(pose, 0.0).is_ok()));
+        let receipt = session.end_stroke().unwrap();
+        receipt.undo_bytes as f64 / receipt.touched_vertices as f64
+    };
+    // Position, its f32 copy and the normal, each with a number; and a rim of normals that is thinner on finer meshes.
+    let [coarse, fine] = [3, 5].map(bytes);
+    assert!(fine < 72.0 + 16.0 && fine < coarse, "{coarse} {fine}");
+}
