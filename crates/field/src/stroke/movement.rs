@@ -5,6 +5,8 @@
 //! whose four stages all lie beyond the support rests: its world coordinates keep their bits through that step. Sleeping only
 //! skips steps through which a point is certain to rest, so it changes no bit.
 
+mod travelers;
+
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -17,6 +19,7 @@ use crate::{
     rigid_field::VelocityBlock,
     rk4::{Rk4Block, rk4_step},
 };
+use travelers::{State, Travelers};
 
 /// Steps between two keys at most: more is a mistake in the recipe, and the table of poses must fit in memory.
 pub(super) const MAX_STEPS: usize = 1_000_000;
@@ -178,6 +181,9 @@ impl Segment {
         let bounds = tool.support_bounds();
         let mut resting =
             travelers.near(|center, radius| self.comes_near(center, radius, |local| bounds.distance(local)));
+        if resting.is_empty() {
+            return 0;
+        }
         let mut due = Vec::new();
         let field = RigidField::new(tool, self.twist);
         let mut blocks = [Rk4Block::new(VelocityBlock::REST); ABREAST];
@@ -359,80 +365,6 @@ impl Segment {
             }
         }
         false
-    }
-}
-
-/// Points on their way through a segment.
-struct Travelers<'a> {
-    world: &'a mut [DVec3],
-    local: Vec<DVec3>,
-    state: Vec<State>,
-    /// First step at which a resting point must be looked at again.
-    wake: Vec<usize>,
-    /// Whether one that moved, or was about to, no longer does.
-    have_stopped: bool,
-}
-
-/// What a traveler does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum State {
-    /// It stands still in the world.
-    Resting,
-    /// It moves in tool coordinates.
-    Moving,
-    /// It stands still in tool coordinates until the end of the segment.
-    Carried,
-}
-
-impl<'a> Travelers<'a> {
-    fn new(world: &'a mut [DVec3]) -> Self {
-        let count = world.len();
-        Self {
-            world,
-            local: vec![DVec3::ZERO; count],
-            state: vec![State::Resting; count],
-            wake: vec![0; count],
-            have_stopped: false,
-        }
-    }
-
-    /// Those in whose neighborhood, a ball by center and radius, something may happen.
-    fn near(&mut self, may_touch: impl Fn(DVec3, f64) -> bool) -> Vec<u32> {
-        self.wake.fill(0);
-        let may_touch_all = |points: &[DVec3]| {
-            let bounds = Aabb::of(points.iter().copied());
-            may_touch(bounds.center(), 0.5 * bounds.size().length())
-        };
-        let mut near = Vec::new();
-        if may_touch_all(self.world) {
-            for (block, points) in self.world.chunks(LANES).enumerate().filter(|(_, points)| may_touch_all(points)) {
-                near.extend((0..points.len()).map(|lane| (block * LANES + lane) as u32));
-            }
-        }
-        near
-    }
-
-    /// Lets a point rest where it is at the beginning of the step with this placement.
-    fn rest(&mut self, index: usize, placement: &Placement, wake: usize) {
-        if self.state[index] != State::Resting {
-            self.world[index] = placement.to_world(self.local[index]);
-            self.state[index] = State::Resting;
-        }
-        self.wake[index] = wake;
-        self.have_stopped = true;
-    }
-
-    /// Lets a point stand still in tool coordinates.
-    fn carry(&mut self, index: usize) {
-        self.state[index] = State::Carried;
-        self.have_stopped = true;
-    }
-
-    /// Lets all rest that come with the tool, whose way ends with this placement.
-    fn arrive(&mut self, placement: &Placement) {
-        for index in 0..self.world.len() {
-            self.rest(index, placement, 0);
-        }
     }
 }
 
