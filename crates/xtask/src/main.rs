@@ -9,6 +9,7 @@ mod capi;
 mod data;
 mod environment;
 mod gallery;
+mod instructions;
 mod oracle;
 mod python;
 mod shell;
@@ -21,7 +22,7 @@ use shell::TaskResult;
 
 type Task = (&'static str, &'static str, fn() -> TaskResult);
 
-const TASKS: [Task; 7] = [
+const TASKS: [Task; 8] = [
     (
         "test",
         "formatting, lints, all tests in Rust, C and Python, then the oracle: what must pass before a change goes in",
@@ -39,6 +40,7 @@ const TASKS: [Task; 7] = [
     ),
     ("capi", "install the library for C with its header under a prefix, by default target/capi", capi::install),
     ("python", "install the Python package into the target folder and run its tests", python::test_package),
+    ("instructions", "count the instructions of the hot loops anew, which a test compares", instructions::count_all),
     ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
     ("gallery", "run all recipes and examples of the figures, and show them in gallery/gallery.md", gallery::draw_all),
 ];

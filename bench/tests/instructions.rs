@@ -1,0 +1,154 @@
+//! A guard against hot loops getting slower: the instructions that each takes, counted by Callgrind, beside those in
+//! `bench/instructions.json`. Counts do not depend on how busy the machine is.
+//!
+//! Where a change is meant, or the compiler is another one, `cargo xtask instructions` writes the counts anew.
+
+#![allow(clippy::print_stderr, reason = "says what differs")]
+
+use std::{collections::BTreeMap, env, fs, path::Path, process::Command, sync::Arc};
+
+use glam::DVec3;
+use isochore_bench::{on_one_core, scan, scratch};
+use isochore_curve::{FrameMethod, Spine, TrigonometricCurve, rotation_minimizing_frames};
+use isochore_field::{Move, Pose, Profile, Stroke, Tool, flow_points};
+use isochore_mesh::{
+    Capsule, Distance, DistanceField, DistanceFieldOptions, Padding, SelfIntersections, Silent, io, primitives,
+};
+use serde::{Deserialize, Serialize};
+
+/// Share by which a count may grow. Larger lets loops get slower step by step; smaller fails for what another library of the
+/// system counts otherwise.
+const TOLERANCE: f64 = 0.03;
+
+/// The same where the compiler is not the one of the counts, which moves them by itself.
+const TOLERANCE_OF_COMPILER: f64 = 0.25;
+
+/// Asks for the counts to be written.
+const WRITE_VARIABLE: &str = "ISOCHORE_WRITE_INSTRUCTIONS";
+
+/// The loops; each is an ignored test below.
+const LOOPS: [&str; 7] =
+    ["distance_grid", "advect_analytic", "advect_sampled", "split", "self_intersection", "read_obj", "frames"];
+
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct Baseline {
+    rustc: String,
+    instructions: BTreeMap<String, u64>,
+}
+
+#[test]
+fn no_loop_takes_more_instructions() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("instructions.json");
+    let counted = Baseline {
+        rustc: rustc(),
+        instructions: LOOPS.iter().map(|&name| (name.to_owned(), instructions(name))).collect(),
+    };
+    if env::var_os(WRITE_VARIABLE).is_some() {
+        let text = serde_json::to_string_pretty(&counted).expect("numbers and strings");
+        return fs::write(path, text + "\n").expect("the folder can be written");
+    }
+    let text = fs::read_to_string(path).expect("counts to compare with");
+    let baseline: Baseline = serde_json::from_str(&text).expect("counts");
+    let tolerance = if baseline.rustc == counted.rustc { TOLERANCE } else { TOLERANCE_OF_COMPILER };
+    let mut slower = Vec::new();
+    for (name, &count) in &counted.instructions {
+        let before = *baseline.instructions.get(name).unwrap_or(&0);
+        let growth = count as f64 / before as f64 - 1.0;
+        eprintln!("{name}: {before} instructions before, {count} now, {:+.1} %", 100.0 * growth);
+        if growth.is_nan() || growth > tolerance {
+            slower.push(name);
+        }
+    }
+    assert!(slower.is_empty(), "more instructions than in bench/instructions.json: {slower:?}");
+}
+
+/// The compiler, as it names itself.
+fn rustc() -> String {
+    let output = Command::new("rustc").arg("--version").output().expect("a compiler");
+    String::from_utf8_lossy(&output.stdout).trim().to_owned()
+}
+
+/// Instructions of one of the loops.
+fn instructions(name: &str) -> u64 {
+    let program = env::current_exe().expect("this program has a path");
+    let mut valgrind = Command::new("valgrind");
+    valgrind
+        .args(["--tool=callgrind", "--toggle-collect=*guarded*", "--callgrind-out-file=/dev/null"])
+        .arg(program)
+        .args(["--ignored", "--exact", name, "--test-threads=1"]);
+    let output = valgrind.output().expect("valgrind, which is in a package of that name");
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{name}: {text}");
+    let count = text.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok());
+    count.unwrap_or_else(|| panic!("{name}: no count in {text}"))
+}
+
+/// What is counted: nothing outside of this function.
+#[inline(never)]
+fn guarded<T>(work: impl FnOnce() -> T) {
+    std::hint::black_box(work());
+}
+
+fn count<T>(work: impl FnOnce() -> T + Send) {
+    on_one_core(|| guarded(work));
+}
+
+fn advect(tool: Arc<dyn Distance>) {
+    let points = primitives::icosphere(1.0, 4).positions;
+    let tool = Arc::new(Tool::new(tool, 0.3, Profile::Quintic).expect("a support"));
+    let way = vec![Pose::at(DVec3::new(0.0, 0.9, -0.2)), Pose::at(DVec3::new(0.0, 0.9, 0.2))];
+    let stroke = Stroke::Move(Move::new(tool, way, 0.125).expect("a way"));
+    count(|| flow_points(&points, std::slice::from_ref(&stroke), &Silent));
+}
+
+#[test]
+#[ignore = "counted by another test"]
+fn distance_grid() {
+    let mesh = scan(3);
+    let options = DistanceFieldOptions { resolution: 24, ..DistanceFieldOptions::default() };
+    count(|| DistanceField::new(&mesh, &options, &Silent));
+}
+
+#[test]
+#[ignore = "counted by another test"]
+fn advect_analytic() {
+    advect(Arc::new(Capsule::new(0.15, 0.8).expect("a length")));
+}
+
+#[test]
+#[ignore = "counted by another test"]
+fn advect_sampled() {
+    let mesh = primitives::icosphere(0.4, 2);
+    let options =
+        DistanceFieldOptions { resolution: 16, padding: Padding::Reach(0.3), ..DistanceFieldOptions::default() };
+    advect(Arc::new(DistanceField::new(&mesh, &options, &Silent).expect("a sound mesh")));
+}
+
+#[test]
+#[ignore = "counted by another test"]
+fn split() {
+    let mesh = scan(4);
+    count(|| mesh.split_to_length(0.02, 1_000_000, &Silent));
+}
+
+#[test]
+#[ignore = "counted by another test"]
+fn self_intersection() {
+    let mesh = scan(5);
+    count(|| SelfIntersections::of(&mesh, &Silent));
+}
+
+#[test]
+#[ignore = "counted by another test"]
+fn read_obj() {
+    let path = scratch().join("instructions.obj");
+    io::write(&path, &scan(4)).expect("the scratch folder can be written");
+    count(|| io::read(&path));
+}
+
+#[test]
+#[ignore = "counted by another test"]
+fn frames() {
+    let spine = Spine::sample(&TrigonometricCurve::torus_knot(), 10_000).expect("a regular curve");
+    count(|| rotation_minimizing_frames(&spine, -DVec3::X, FrameMethod::DoubleReflection, Default::default()));
+}

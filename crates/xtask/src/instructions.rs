@@ -1,0 +1,9 @@
+//! Counts the instructions of the hot loops anew.
+
+use crate::shell::{TaskResult, cargo, run};
+
+/// Writes `bench/instructions.json`, which a test compares with.
+pub(crate) fn count_all() -> TaskResult {
+    let mut test = cargo(&["test", "--locked", "--quiet", "--package", "isochore-bench", "--test", "instructions"]);
+    run(test.env("ISOCHORE_WRITE_INSTRUCTIONS", "1"))
+}
