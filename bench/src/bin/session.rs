@@ -20,13 +20,14 @@ const SEGMENTS: [usize; 3] = [144, 289, 577];
 /// The one by which the frame is judged, of a million triangles.
 const JUDGED: usize = 1;
 
-/// Share of the vertices of a million triangles that the brush reaches.
-const REACHED: f64 = 0.02;
+/// Share of the surface of a million triangles within reach of the brush, so that a move in the middle of its way in and out touches
+/// two vertices in a hundred.
+const REACHED: f64 = 0.028;
 
 const MOVES: usize = 300;
 
 /// How far the middle of the brush is above the surface at rest, as a share of its reach: the core does not touch.
-const HEIGHT: f64 = 0.6;
+const HEIGHT: f64 = 0.7;
 
 fn main() {
     print_row([
