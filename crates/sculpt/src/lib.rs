@@ -6,6 +6,7 @@
 //!   and so serves as the log of a session as well.
 //! - A [`Scene`] holds the objects that a recipe describes: meshes, distances, tools, strokes.
 //! - To [`replay`] is to deform the target of a recipe. A [`Report`] tells what came of it, measured on the mesh as written.
+//! - A [`session`] deforms a mesh stroke by stroke under the hands of a host, and its log is a recipe.
 //! - A [`PointFlow`] carries points that are no mesh, and need not be all there at once.
 //!
 //! ```

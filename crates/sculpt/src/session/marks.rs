@@ -52,7 +52,7 @@ impl Marks {
     }
 
     /// All indices in ascending order. They are there until the set is [cleared](Self::clear).
-    pub(super) fn to_sorted(&mut self) -> Vec<u32> {
+    pub(super) fn sorted(&mut self) -> Vec<u32> {
         self.used.sort_unstable();
         let mut indices = Vec::with_capacity(8 * self.used.len());
         for &word in &self.used {
@@ -76,9 +76,9 @@ mod tests {
         marks.resize(1000);
         assert!([999, 3, 64, 63, 500].into_iter().all(|index| marks.insert(index)));
         assert!(!marks.insert(64));
-        assert_eq!(marks.to_sorted(), [3, 63, 64, 500, 999]);
+        assert_eq!(marks.sorted(), [3, 63, 64, 500, 999]);
         assert!(marks.contains(500) && !marks.contains(501) && !marks.contains(5000));
         marks.clear();
-        assert!(marks.to_sorted().is_empty() && !marks.contains(500));
+        assert!(marks.sorted().is_empty() && !marks.contains(500));
     }
 }

@@ -13,7 +13,7 @@ impl Surface {
         self.tree.visit_box(bounds, |triangle| {
             marks.insert(triangle);
         });
-        marks.to_sorted()
+        marks.sorted()
     }
 
     /// The vertices of `triangles` that lie in a box.
@@ -35,7 +35,7 @@ impl Surface {
                 marks.extend(triangle.vertices);
             }
         }
-        marks.to_sorted()
+        marks.sorted()
     }
 
     /// The triangles at `vertices`, and `others`.
@@ -47,6 +47,6 @@ impl Surface {
             marks.extend(self.topology.fan(vertex).map(|half_edge| half_edge / 3));
         }
         marks.extend(others.iter().copied());
-        marks.to_sorted()
+        marks.sorted()
     }
 }
