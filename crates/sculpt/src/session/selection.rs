@@ -5,13 +5,23 @@ use isochore_mesh::Aabb;
 use super::surface::Surface;
 
 impl Surface {
-    /// The triangles that may touch a box, and some more.
+    /// The triangles whose own boxes touch a box: which leaves of the tree they are in, which depends on its history, plays no part.
     pub(super) fn triangles_in(&mut self, bounds: Aabb) -> Vec<u32> {
+        let (triangles, positions) = (self.topology.triangles(), self.positions.items());
+        let touches = |triangle: u32| {
+            let triangle = &triangles[triangle as usize];
+            triangle.is_alive() && {
+                let own = Aabb::of(triangle.vertices.map(|vertex| positions[vertex as usize]));
+                own.min.cmple(bounds.max).all() && own.max.cmpge(bounds.min).all()
+            }
+        };
         let marks = &mut self.triangle_marks;
         marks.clear();
         marks.resize(self.corners.items().len());
         self.tree.visit_box(bounds, |triangle| {
-            marks.insert(triangle);
+            if touches(triangle) {
+                marks.insert(triangle);
+            }
         });
         marks.sorted()
     }
