@@ -10,7 +10,7 @@ use isochore_mesh::{
     Cancelled, MeshError, SelfIntersectionError,
     io::{ParseError, ReadError, WriteError},
 };
-use isochore_sculpt::{ReplayError, recipe::RecipeError};
+use isochore_sculpt::{ReplayError, recipe::RecipeError, session::SessionError};
 
 /// What came of a call.
 #[repr(C)]
@@ -28,8 +28,10 @@ pub enum Status {
     File = 4,
     /// The progress function asked to stop.
     Cancelled = 5,
+    /// The call does not fit the state of the handle.
+    State = 6,
     /// A fault of isochore itself; the handles of the call must only be given back.
-    Internal = 6,
+    Internal = 7,
 }
 
 /// A status other than `Ok`, and words for it.
@@ -130,5 +132,15 @@ impl From<ReplayError> for Failure {
             ReplayError::Cancelled(cancelled) => cancelled.into(),
             error => Self::new(Status::Recipe, error),
         }
+    }
+}
+
+impl From<SessionError> for Failure {
+    fn from(error: SessionError) -> Self {
+        let status = match error {
+            SessionError::StrokeUnderWay | SessionError::NoStroke => Status::State,
+            _ => Status::Argument,
+        };
+        Self::new(status, error)
     }
 }

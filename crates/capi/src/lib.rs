@@ -7,6 +7,8 @@ mod memory;
 mod mesh;
 mod monitor;
 mod replay;
+mod session;
+mod tool;
 
 pub use error::{Status, isochore_last_error};
 pub use memory::isochore_text_free;
@@ -17,3 +19,11 @@ pub use mesh::{
 };
 pub use monitor::Progress;
 pub use replay::{NamedMesh, isochore_run};
+pub use session::{
+    Buffer, Buffers, Hit, Range, Session, StrokeReceipt, isochore_session_begin_stroke, isochore_session_buffers,
+    isochore_session_cancel_stroke, isochore_session_changed, isochore_session_closest_point,
+    isochore_session_end_stroke, isochore_session_export, isochore_session_free, isochore_session_log,
+    isochore_session_move_to, isochore_session_new, isochore_session_pick, isochore_session_redo,
+    isochore_session_take_changes, isochore_session_undo, isochore_session_volume,
+};
+pub use tool::{Tool, isochore_tool_free, isochore_tool_new};

@@ -16,6 +16,15 @@ pub(crate) unsafe fn reference<'a, T>(name: &str, handle: *const T) -> Result<&'
     unsafe { handle.as_ref() }.ok_or_else(|| Failure::argument(format!("{name} is NULL")))
 }
 
+/// The value that a handle stands for, to be changed.
+///
+/// # Safety
+/// `handle` is NULL or points to a value that nobody else uses during `'a`.
+pub(crate) unsafe fn reference_mut<'a, T>(name: &str, handle: *mut T) -> Result<&'a mut T, Failure> {
+    // SAFETY: as the caller promises.
+    unsafe { handle.as_mut() }.ok_or_else(|| Failure::argument(format!("{name} is NULL")))
+}
+
 /// A text of the caller's.
 ///
 /// # Safety

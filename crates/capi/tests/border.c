@@ -91,10 +91,76 @@ static void recipes(void) {
     isochore_mesh_free(mesh);
 }
 
+static void sessions(void) {
+    const double start[] = {0, 0, 2}, end[] = {0.2, 0, 1}, down[] = {0, 0, -1}, above[] = {0.2, 0.2, 5}, nowhere[] = {NAN, 0, 0};
+    IsochoreMesh *mesh = tetrahedron(), *moved = NULL, *again = NULL, *back = NULL;
+    IsochoreTool *tool = NULL;
+    IsochoreSession *session = NULL;
+    IsochoreStrokeReceipt receipt;
+    IsochoreBuffers buffers;
+    const IsochoreRange *ranges = NULL;
+    IsochoreHit hit;
+    size_t count = 0;
+    bool done = false;
+    double volume = 0;
+    char *log = NULL;
+
+    CHECK(isochore_tool_new("ball", "{\"support\": 1}", NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_RECIPE);
+    CHECK(strstr(isochore_last_error(), "shape") && tool == NULL);
+    CHECK(isochore_tool_new("ball", "{\"shape\": {\"kind\": \"sphere\", \"radius\": 0.3}, \"support\": 1}", NULL, 0, NULL, NULL,
+                            &tool) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_new(mesh, 0, 0, &session) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_take_changes(session) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_changed(session, ISOCHORE_BUFFER_INDICES, &ranges, &count) == ISOCHORE_STATUS_OK);
+    CHECK(count == 1 && ranges[0].start == 0 && ranges[0].end == 4);
+    CHECK(isochore_session_changed(session, 4, &ranges, &count) == ISOCHORE_STATUS_ARGUMENT);
+
+    CHECK(isochore_session_end_stroke(session, NULL) == ISOCHORE_STATUS_STATE);
+    CHECK(isochore_session_begin_stroke(session, tool, false, 0) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_undo(session, &done) == ISOCHORE_STATUS_STATE);
+    CHECK(isochore_session_move_to(session, nowhere, NULL, 0) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_end_stroke(session, &receipt) == ISOCHORE_STATUS_OK);
+    CHECK(receipt.moves == 1 && receipt.touched_vertices > 0 && receipt.has_volume);
+    CHECK(isochore_session_volume(session, &volume) == ISOCHORE_STATUS_OK);
+    CHECK(fabs(volume - 1.0 / 6 - receipt.volume_flow) < 1e-14);
+    CHECK(isochore_session_buffers(session, &buffers) == ISOCHORE_STATUS_OK);
+    CHECK(buffers.vertex_count == 4 && buffers.triangle_count == 4 && buffers.uvs == NULL && buffers.colors == NULL);
+    CHECK(buffers.positions[11] != 1);
+    CHECK(isochore_session_pick(session, above, down, &hit, &done) == ISOCHORE_STATUS_OK && done && hit.distance > 3);
+    CHECK(isochore_session_closest_point(session, above, &hit, &done) == ISOCHORE_STATUS_OK && done);
+
+    /* The log gives the same bits on the same mesh. */
+    CHECK(isochore_session_log(session, &log) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_export(session, false, &moved) == ISOCHORE_STATUS_OK);
+    char *recipe = (char *)malloc(strlen(log) + 64);
+    sprintf(recipe, "{ \"refine\": { \"enabled\": false },%s", strchr(log, '{') + 1);
+    IsochoreNamedMesh named = {"target", mesh};
+    CHECK(isochore_run(recipe, &named, 1, NULL, NULL, &again, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(memcmp(isochore_mesh_positions(moved), isochore_mesh_positions(again), sizeof CORNERS) == 0);
+    free(recipe);
+
+    CHECK(isochore_session_undo(session, &done) == ISOCHORE_STATUS_OK && done);
+    CHECK(isochore_session_export(session, false, &back) == ISOCHORE_STATUS_OK);
+    CHECK(memcmp(isochore_mesh_positions(back), CORNERS, sizeof CORNERS) == 0);
+    CHECK(isochore_session_redo(session, &done) == ISOCHORE_STATUS_OK && done);
+    CHECK(isochore_session_redo(session, NULL) == ISOCHORE_STATUS_OK);
+
+    isochore_text_free(log);
+    isochore_mesh_free(back);
+    isochore_mesh_free(again);
+    isochore_mesh_free(moved);
+    isochore_session_free(session);
+    isochore_tool_free(tool);
+    isochore_mesh_free(mesh);
+}
+
 int main(int count, char **arguments) {
     CHECK(count == 2);
     meshes(arguments[1]);
     faulty_meshes();
     recipes();
+    sessions();
     return 0;
 }

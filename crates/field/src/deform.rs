@@ -1,6 +1,6 @@
 //! The deformation of a mesh by strokes: advect, refine, stamp, lock.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use glam::DVec3;
 use isochore_mesh::{Cancelled, ClosedMesh, MeshError, Monitor, TriMesh, signed_volume};

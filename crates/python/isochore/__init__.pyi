@@ -36,13 +36,13 @@ class Mesh:
         positions: ArrayLike,
         triangles: ArrayLike,
         *,
-        uvs: ArrayLike | None = None,
+        uvs: Iterable[ArrayLike] | None = None,
         colors: ArrayLike | None = None,
     ) -> None:
         """Copies the arrays.
 
         positions: (V, 3) numbers, model units. triangles: (T, 3) integers, counter-clockwise seen from outside.
-        uvs: (T, 3, 2), by corner, so that seams do not open the surface. colors: (V, 4), linear RGBA, 0 to 1.
+        uvs: sets of texture coordinates, (T, 3, 2) each, by corner, so that seams do not open the surface. colors: (V, 4), linear RGBA, 0 to 1.
         """
 
     @classmethod
@@ -75,8 +75,8 @@ class Mesh:
         """(T, 3) vertex indices, counter-clockwise seen from outside; a view."""
 
     @property
-    def uvs(self) -> NDArray[np.float64] | None:
-        """(T, 3, 2), the first set of texture coordinates by corner; a view."""
+    def uvs(self) -> list[NDArray[np.float64]]:
+        """Sets of texture coordinates by corner, (T, 3, 2) each; views."""
 
     @property
     def colors(self) -> NDArray[np.float64] | None:
@@ -141,6 +141,145 @@ class DistanceField:
         At the border of the grid the spline bends: eight cells inside, the gradient is off by 3e-5 at most because of it.
         Beyond the grid the distance is infinite and the gradient zero.
         """
+
+class Tool:
+    """A tool ready to work, made once and shared between strokes and sessions."""
+
+    def __init__(
+        self,
+        description: Mapping[str, Any],
+        *,
+        name: str = "tool",
+        mesh: Mesh | HasVerticesAndFaces | None = None,
+        progress: Progress | None = None,
+    ) -> None:
+        """Makes a tool from what a recipe says of one: {"shape": {"kind": "sphere", "radius": 0.1}, "support": 0.1}.
+
+        name: what the log calls it. mesh: the mesh of a shape of the kind "mesh", whose distance is sampled now.
+        """
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def warnings(self) -> list[str]:
+        """What there is to know about how the description was understood."""
+
+class Session:
+    """A mesh that strokes deform one after the other, at the pace of a frame, with undo and redo.
+
+    A vertex keeps its number for good: first come those of the mesh as opened, then inserted ones. The buffers hold render vertices: a
+    vertex as the triangles on one side of a seam see it. Render vertex i is vertex i of the mesh as opened as long as there are that
+    many.
+
+    `positions`, `normals`, `uvs`, `colors` and `triangles` are views of the session's own buffers. While one is held the session does
+    not change: strokes, undo and redo raise BufferError until it is dropped.
+    """
+
+    def __init__(
+        self,
+        mesh: Mesh | HasVerticesAndFaces,
+        *,
+        step: float | None = None,
+        undo_bytes: int | None = None,
+        normals: str = "area",
+    ) -> None:
+        """Opens a session on a manifold, oriented mesh.
+
+        step: travel of the tool in one time step, as `integrate.step` of a recipe. undo_bytes: what undo and redo may hold; beyond, the
+        oldest strokes are forgotten. normals: how triangles are weighted in vertex normals, by "area" or "angle".
+        """
+
+    def begin_stroke(
+        self, tool: Tool, *, refine: bool = True, longest_edge: float | None = None, max_triangles: int | None = None
+    ) -> None:
+        """Begins a stroke; nothing moves before the second pose.
+
+        refine: whether edges in the tool's reach are split, collapsed and flipped. longest_edge: longer ones are split, model units.
+        """
+
+    def move_to(
+        self, at: ArrayLike, *, rotate: ArrayLike = ..., time: float = 0.0
+    ) -> dict[str, Any]:
+        """Moves the tool along a screw to a pose: `at` (3,), model units; `rotate` axis x, y, z and degrees, absolute.
+
+        time: seconds of the host's clock, for the log of the receipt alone. Returns what was moved, inserted, removed and flipped.
+        """
+
+    def end_stroke(self) -> dict[str, Any]:
+        """Ends the stroke; its receipt, with signed changes of volume by the flow, by splits and by remeshing apart."""
+
+    def cancel_stroke(self) -> None:
+        """Takes back the stroke under way."""
+
+    def undo(self) -> bool:
+        """Takes back the last stroke, to the bit; False where there is none."""
+
+    def redo(self) -> bool:
+        """Does again what was undone last, to the bit; False where there is nothing."""
+
+    def log(self) -> dict[str, Any]:
+        """All strokes that are done, as a recipe for `run` and `run_points`, on this mesh (its name is "target") or any other."""
+
+    def export(self, *, lock: bool = False) -> tuple[Mesh, NDArray[np.uint32]]:
+        """The surface as a mesh, and the number (V,) in the session of each of its vertices.
+
+        lock: gives back the volume of the mesh as opened by the least displacement of what has moved.
+        """
+
+    @property
+    def positions(self) -> NDArray[np.float32]:
+        """(R, 3), model units; a view."""
+
+    @property
+    def normals(self) -> NDArray[np.float32]:
+        """(R, 3), unit length; a view."""
+
+    @property
+    def uvs(self) -> list[NDArray[np.float32]]:
+        """Sets of texture coordinates, (R, 2) each; views."""
+
+    @property
+    def colors(self) -> NDArray[np.float32]:
+        """(R, 4), linear RGBA, or (0, 4) where the mesh has none; a view."""
+
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """(T, 3) render vertices; those removed are three times zero; a view."""
+
+    def take_changes(self) -> dict[str, Any]:
+        """What has changed in the buffers since the last call, at first everything: pairs (start, end) of rows by buffer.
+
+        `attributes` stands for UVs and colors. Give copies the buffers' lengths first, then copy the rows.
+        """
+
+    def pick(self, origin: ArrayLike, direction: ArrayLike) -> dict[str, Any] | None:
+        """The first point of the surface on a ray: `point`, `normal`, `distance`, `triangle`, `vertices`."""
+
+    def closest_point(self, point: ArrayLike) -> dict[str, Any] | None:
+        """The nearest point of the surface, as `pick` tells of it."""
+
+    def vertices_in_reach(self, tool: Tool, at: ArrayLike, *, rotate: ArrayLike = ...) -> NDArray[np.uint32]:
+        """Numbers (N,) of the vertices that a stroke of the tool would move at this pose, in ascending order."""
+
+    def preview(
+        self, tool: Tool, start: ArrayLike, end: ArrayLike, *, per_side: int = 12
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Points (N, 3) around the tool, and where a move from `start` to `end` would shift them, (N, 3): arrows to draw."""
+
+    @property
+    def moved_volume(self) -> tuple[float, float]:
+        """Volume that the stroke under way has moved outward and inward so far, cubic model units."""
+
+    @property
+    def volume(self) -> float | None:
+        """Volume inside the surface; None where it is open."""
+
+    @property
+    def history(self) -> dict[str, int]:
+        """Strokes `undoable`, `redoable` and `forgotten`, and `bytes` held for them."""
+
+    def vertices_of_render_vertices(self) -> NDArray[np.uint32]:
+        """Number (R,) of the vertex of each render vertex."""
 
 class Result(NamedTuple):
     """What became of a recipe's target."""

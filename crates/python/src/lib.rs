@@ -5,6 +5,8 @@ mod distance;
 mod error;
 mod mesh;
 mod replay;
+mod session;
+mod tool;
 mod watch;
 
 use pyo3::prelude::*;
@@ -18,5 +20,7 @@ mod _native {
         error::{CancelledError, Error, RecipeFault},
         mesh::Mesh,
         replay::LoadedRecipe,
+        session::Session,
+        tool::Tool,
     };
 }

@@ -34,12 +34,12 @@ impl Mesh {
     fn new(
         positions: &Bound<'_, PyAny>,
         triangles: &Bound<'_, PyAny>,
-        uvs: Option<&Bound<'_, PyAny>>,
+        uvs: Option<Vec<Bound<'_, PyAny>>>,
         colors: Option<&Bound<'_, PyAny>>,
     ) -> Result<Self, Failure> {
         let mut mesh = geometry(positions, triangles)?;
-        if let Some(uvs) = uvs {
-            let uvs = contiguous::<f64>(uvs)?;
+        for uvs in uvs.unwrap_or_default() {
+            let uvs = contiguous::<f64>(&uvs)?;
             check_shape("uvs", uvs.shape(), &[Some(mesh.triangles.len()), Some(3), Some(2)])?;
             mesh.corner.uvs.push(cast_slice::<f64, [DVec2; 3]>(finite_numbers("uvs", &uvs)?).to_vec());
         }
@@ -107,9 +107,11 @@ impl Mesh {
     }
 
     #[getter]
-    fn uvs<'py>(slf: &Bound<'py, Self>) -> Option<Bound<'py, PyAny>> {
-        let uvs = slf.get().mesh.corner.uvs.first()?;
-        Some(view::<f64>(slf.clone().into_any(), cast_slice(uvs.as_flattened()), &[uvs.len(), 3, 2]))
+    fn uvs<'py>(slf: &Bound<'py, Self>) -> Vec<Bound<'py, PyAny>> {
+        let set = |uvs: &Vec<[DVec2; 3]>| {
+            view::<f64>(slf.clone().into_any(), cast_slice(uvs.as_flattened()), &[uvs.len(), 3, 2])
+        };
+        slf.get().mesh.corner.uvs.iter().map(set).collect()
     }
 
     #[getter]

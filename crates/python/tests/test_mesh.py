@@ -77,9 +77,9 @@ def test_unusable_meshes_are_refused():
 def test_attributes_come_back():
     uvs = np.arange(6.0).reshape(1, 3, 2)
     colors = np.linspace(0, 1, 12).reshape(3, 4)
-    mesh = isochore.Mesh(np.eye(3), [[0, 1, 2]], uvs=uvs, colors=colors)
-    assert np.array_equal(mesh.uvs, uvs) and np.array_equal(mesh.colors, colors)
-    assert isochore.Mesh(np.eye(3), [[0, 1, 2]]).uvs is None
+    mesh = isochore.Mesh(np.eye(3), [[0, 1, 2]], uvs=[uvs], colors=colors)
+    assert np.array_equal(mesh.uvs, [uvs]) and np.array_equal(mesh.colors, colors)
+    assert isochore.Mesh(np.eye(3), [[0, 1, 2]]).uvs == []
     with pytest.raises(ValueError, match="colors"):
         isochore.Mesh(np.eye(3), [[0, 1, 2]], colors=np.full((3, 4), np.inf))
 

@@ -1,11 +1,12 @@
 //! The account of a run, as JSON.
 
-use std::{collections::BTreeMap, time::Instant};
+use std::collections::BTreeMap;
 
 use isochore_mesh::{ClosedMesh, Monitor, SelfIntersectionError, SelfIntersections, TriMesh};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use web_time::Instant;
 
 use crate::{
     recipe::{Promise, Recipe},

@@ -10,7 +10,6 @@ mod tool;
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::Arc,
-    time::Instant,
 };
 
 use glam::{DQuat, DVec3};
@@ -19,6 +18,7 @@ use isochore_mesh::{
     self as mesh, Aabb, ClosedMesh, Distance, DistanceField, DistanceFieldError, DistanceFieldOptions, Monitor,
     Padding, TriMesh, primitives,
 };
+use web_time::Instant;
 
 use crate::{
     recipe::{
@@ -331,6 +331,13 @@ fn profile(profile: Profile) -> field::Profile {
         Profile::Quartic => field::Profile::Quartic,
         Profile::Contact => field::Profile::Contact,
         Profile::Thesis => field::Profile::Thesis,
+    }
+}
+
+impl Key {
+    /// The pose itself, world from tool.
+    pub fn pose(&self) -> field::Pose {
+        pose(self)
     }
 }
 

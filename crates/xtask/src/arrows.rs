@@ -5,12 +5,13 @@ use std::collections::BTreeSet;
 use crate::shell::{cargo, workspace};
 
 /// Crates of the workspace that each library or command may depend on.
-const ALLOWED: [(&str, &[&str]); 8] = [
+const ALLOWED: [(&str, &[&str]); 9] = [
     ("isochore-mesh", &[]),
     ("isochore-curve", &[]),
     ("isochore-field", &["isochore-mesh", "isochore-curve"]),
     ("isochore-sculpt", &["isochore-mesh", "isochore-field"]),
     ("isochore-picture", &["isochore-mesh"]),
+    ("isochore-wasm", &["isochore-mesh", "isochore-field", "isochore-sculpt"]),
     ("isochore-capi", &["isochore-mesh", "isochore-field", "isochore-sculpt"]),
     ("isochore-python", &["isochore-mesh", "isochore-field", "isochore-sculpt"]),
     ("isochore", &["isochore-mesh", "isochore-curve", "isochore-field", "isochore-sculpt", "isochore-picture"]),

@@ -8,6 +8,7 @@ mod bench;
 mod capi;
 mod data;
 mod environment;
+mod full;
 mod gallery;
 mod instructions;
 mod oracle;
@@ -15,6 +16,8 @@ mod python;
 mod shell;
 mod size;
 mod test;
+#[cfg(feature = "browser")]
+mod wasm;
 
 use std::process::ExitCode;
 
@@ -22,7 +25,7 @@ use shell::TaskResult;
 
 type Task = (&'static str, &'static str, fn() -> TaskResult);
 
-const TASKS: [Task; 8] = [
+const TASKS: &[Task] = &[
     (
         "test",
         "formatting, lints, all tests in Rust, C and Python, then the oracle: what must pass before a change goes in",
@@ -41,6 +44,9 @@ const TASKS: [Task; 8] = [
     ("capi", "install the library for C with its header under a prefix, by default target/capi", capi::install),
     ("python", "install the Python package into the target folder and run its tests", python::test_package),
     ("instructions", "count the instructions of the hot loops anew, which a test compares", instructions::count_all),
+    ("full", "what is too heavy for every run: tests in a browser and in Blender", full::run_all),
+    #[cfg(feature = "browser")]
+    ("browser", "build the package for browsers and run its pages in Chromium", wasm::test_in_browser),
     ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
     ("gallery", "run all recipes and examples of the figures, and show them in gallery/gallery.md", gallery::draw_all),
 ];
@@ -50,7 +56,7 @@ fn main() -> ExitCode {
     let Some((_, _, run)) = TASKS.iter().find(|(task, ..)| *task == name) else {
         eprintln!("usage: cargo xtask TASK");
         for (task, what, _) in TASKS {
-            eprintln!("  {task:<8} {what}");
+            eprintln!("  {task:<12} {what}");
         }
         return ExitCode::from(2);
     };

@@ -1,0 +1,355 @@
+//! The sculpting session.
+
+use std::sync::{
+    Arc, Mutex, MutexGuard, PoisonError,
+    atomic::{AtomicUsize, Ordering},
+};
+
+use glam::DVec3;
+use isochore_field::Pose;
+use isochore_sculpt::{
+    recipe::Key,
+    session::{self, DirtyRange, InteractiveRefinement, NormalWeights, SessionOptions, StrokeOptions},
+};
+use numpy::IntoPyArray;
+use pyo3::{
+    exceptions::PyBufferError,
+    prelude::*,
+    types::{IntoPyDict, PyDict},
+};
+
+use crate::{
+    arrays::{points_to_array, view},
+    error::Failure,
+    mesh::{Mesh, mesh_of},
+    tool::Tool,
+};
+
+/// A mesh that strokes deform one after the other, with undo and redo.
+#[pyclass(frozen, module = "isochore")]
+#[derive(Debug)]
+pub(crate) struct Session {
+    session: Mutex<session::Session>,
+    /// Views of the buffers that NumPy holds.
+    views: Arc<AtomicUsize>,
+}
+
+/// What a view of a buffer keeps alive; while there is one, the session does not change.
+#[pyclass(frozen)]
+#[derive(Debug)]
+struct Hold {
+    _session: Py<Session>,
+    views: Arc<AtomicUsize>,
+}
+
+impl Drop for Hold {
+    fn drop(&mut self) {
+        self.views.fetch_sub(1, Ordering::Release);
+    }
+}
+
+#[pymethods]
+impl Session {
+    #[new]
+    #[pyo3(signature = (mesh, *, step = None, undo_bytes = None, normals = "area"))]
+    fn new(
+        py: Python<'_>,
+        mesh: &Bound<'_, PyAny>,
+        step: Option<f64>,
+        undo_bytes: Option<usize>,
+        normals: &str,
+    ) -> Result<Self, Failure> {
+        let default = SessionOptions::default();
+        let options = SessionOptions {
+            step: step.unwrap_or(default.step),
+            undo_bytes: undo_bytes.unwrap_or(default.undo_bytes),
+            normals: match normals {
+                "area" => NormalWeights::Area,
+                "angle" => NormalWeights::Angle,
+                other => return Err(Failure::Argument(format!("normals are by \"area\" or \"angle\", not {other:?}"))),
+            },
+            ..default
+        };
+        let mesh = mesh_of(mesh)?;
+        let session = py.detach(|| session::Session::open(mesh, options)).map_err(Failure::input)?;
+        Ok(Self { session: Mutex::new(session), views: Arc::default() })
+    }
+
+    #[pyo3(signature = (tool, *, refine = true, longest_edge = None, max_triangles = None))]
+    fn begin_stroke(
+        &self,
+        py: Python<'_>,
+        tool: &Bound<'_, Tool>,
+        refine: bool,
+        longest_edge: Option<f64>,
+        max_triangles: Option<usize>,
+    ) -> Result<(), Failure> {
+        let default = InteractiveRefinement::default();
+        let refinement = InteractiveRefinement {
+            longest: longest_edge,
+            max_triangles: max_triangles.unwrap_or(default.max_triangles),
+            ..default
+        };
+        let options = StrokeOptions { refine: refine.then_some(refinement) };
+        let tool = &tool.get().tool;
+        self.change(py, |session| session.begin_stroke(tool, options).map_err(Failure::input))
+    }
+
+    #[pyo3(signature = (at, *, rotate = [0.0, 0.0, 1.0, 0.0], time = 0.0))]
+    fn move_to<'py>(
+        &self,
+        py: Python<'py>,
+        at: [f64; 3],
+        rotate: [f64; 4],
+        time: f64,
+    ) -> Result<Bound<'py, PyDict>, Failure> {
+        let pose = Key { at, rotate }.pose();
+        let receipt = self.change(py, |session| session.move_to(&pose, time).map_err(Failure::input))?;
+        let dict = PyDict::new(py);
+        dict.set_item("moved_vertices", receipt.moved_vertices)?;
+        dict.set_item("inserted_vertices", receipt.inserted_vertices)?;
+        dict.set_item("removed_vertices", receipt.removed_vertices)?;
+        dict.set_item("flipped_edges", receipt.flipped_edges)?;
+        dict.set_item("is_limited", receipt.is_limited)?;
+        dict.set_item("seconds", receipt.seconds.total())?;
+        Ok(dict)
+    }
+
+    fn end_stroke<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>, Failure> {
+        let receipt = self.change(py, |session| session.end_stroke().map_err(Failure::input))?;
+        let dict = PyDict::new(py);
+        dict.set_item("moves", receipt.moves)?;
+        dict.set_item("touched_vertices", receipt.touched_vertices)?;
+        dict.set_item("inserted_vertices", receipt.inserted_vertices)?;
+        dict.set_item("removed_vertices", receipt.removed_vertices)?;
+        dict.set_item("flipped_edges", receipt.flipped_edges)?;
+        dict.set_item("is_limited", receipt.is_limited)?;
+        let volume = receipt.volume.map(|volume| {
+            let parts = [
+                ("flow", volume.flow),
+                ("splits", volume.splits),
+                ("remeshing", volume.remeshing),
+                ("rounding", volume.rounding),
+            ];
+            parts.into_py_dict(py)
+        });
+        dict.set_item("volume", volume.transpose()?)?;
+        dict.set_item("undo_bytes", receipt.undo_bytes)?;
+        dict.set_item("forgotten_strokes", receipt.forgotten_strokes)?;
+        dict.set_item("seconds", receipt.seconds.total())?;
+        Ok(dict)
+    }
+
+    fn cancel_stroke(&self, py: Python<'_>) -> Result<(), Failure> {
+        self.change(py, |session| session.cancel_stroke().map_err(Failure::input))
+    }
+
+    fn undo(&self, py: Python<'_>) -> Result<bool, Failure> {
+        self.change(py, |session| session.undo().map_err(Failure::input))
+    }
+
+    fn redo(&self, py: Python<'_>) -> Result<bool, Failure> {
+        self.change(py, |session| session.redo().map_err(Failure::input))
+    }
+
+    /// All strokes that are done and not undone, as the keys of a recipe.
+    fn log<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let text = self.lock().log().to_json();
+        py.import("json")?.call_method1("loads", (text,))
+    }
+
+    /// The surface as it stands, and for each of its vertices the number that it has in the session.
+    #[pyo3(signature = (*, lock = false))]
+    fn export<'py>(&self, py: Python<'py>, lock: bool) -> PyResult<(Mesh, Bound<'py, PyAny>)> {
+        let exported = py.detach(|| self.lock().export(lock));
+        let vertices = exported.vertices.into_pyarray(py).into_any();
+        Ok((Mesh { mesh: exported.mesh }, vertices))
+    }
+
+    #[getter]
+    fn positions<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        Self::hold(slf, |session, hold| {
+            let positions = session.buffers().positions;
+            view(hold, positions.as_flattened(), &[positions.len(), 3])
+        })
+    }
+
+    #[getter]
+    fn normals<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        Self::hold(slf, |session, hold| {
+            let normals = session.buffers().normals;
+            view(hold, normals.as_flattened(), &[normals.len(), 3])
+        })
+    }
+
+    #[getter]
+    fn uvs<'py>(slf: &Bound<'py, Self>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let count = slf.get().lock().buffers().uvs.len();
+        let set = |set: usize| {
+            Self::hold(slf, |session, hold| {
+                let uvs = &session.buffers().uvs[set];
+                view(hold, uvs.as_flattened(), &[uvs.len(), 2])
+            })
+        };
+        (0..count).map(set).collect()
+    }
+
+    #[getter]
+    fn colors<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        Self::hold(slf, |session, hold| {
+            let colors = session.buffers().colors;
+            view(hold, colors.as_flattened(), &[colors.len(), 4])
+        })
+    }
+
+    #[getter]
+    fn triangles<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        Self::hold(slf, |session, hold| {
+            let indices = session.buffers().indices;
+            view(hold, indices.as_flattened(), &[indices.len(), 3])
+        })
+    }
+
+    /// Ranges of the buffers that have changed since the last call.
+    fn take_changes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let changes = self.lock().take_changes();
+        let ranges = |ranges: Vec<DirtyRange>| -> Vec<(u32, u32)> {
+            ranges.into_iter().map(|range| (range.start, range.end)).collect()
+        };
+        let dict = PyDict::new(py);
+        dict.set_item("generation", changes.generation)?;
+        dict.set_item("positions", ranges(changes.positions))?;
+        dict.set_item("normals", ranges(changes.normals))?;
+        dict.set_item("attributes", ranges(changes.attributes))?;
+        dict.set_item("triangles", ranges(changes.indices))?;
+        Ok(dict)
+    }
+
+    fn pick<'py>(
+        &self,
+        py: Python<'py>,
+        origin: [f64; 3],
+        direction: [f64; 3],
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let hit = self.lock().pick(origin.into(), direction.into());
+        hit.map(|hit| hit_to_dict(py, &hit)).transpose()
+    }
+
+    fn closest_point<'py>(&self, py: Python<'py>, point: [f64; 3]) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let hit = self.lock().closest_point(point.into());
+        hit.map(|hit| hit_to_dict(py, &hit)).transpose()
+    }
+
+    /// Numbers of the vertices that the support of a tool at a pose reaches.
+    #[pyo3(signature = (tool, at, *, rotate = [0.0, 0.0, 1.0, 0.0]))]
+    fn vertices_in_reach<'py>(
+        &self,
+        py: Python<'py>,
+        tool: &Bound<'_, Tool>,
+        at: [f64; 3],
+        rotate: [f64; 4],
+    ) -> Bound<'py, PyAny> {
+        let mut vertices = Vec::new();
+        self.lock().vertices_in_reach(&tool.get().tool, &Key { at, rotate }.pose(), &mut vertices);
+        vertices.into_pyarray(py).into_any()
+    }
+
+    /// Points around a tool and where a move from one place to another would shift them.
+    #[pyo3(signature = (tool, start, end, *, per_side = 12))]
+    fn preview<'py>(
+        &self,
+        py: Python<'py>,
+        tool: &Bound<'_, Tool>,
+        start: [f64; 3],
+        end: [f64; 3],
+        per_side: usize,
+    ) -> Result<(Bound<'py, PyAny>, Bound<'py, PyAny>), Failure> {
+        let [start, end] = [start, end].map(|at| Pose::at(at.into()));
+        let arrows = self.lock().preview(&tool.get().tool, &start, &end, per_side).map_err(Failure::input)?;
+        let points: Vec<DVec3> = arrows.iter().map(|arrow| arrow.point).collect();
+        let shifts: Vec<DVec3> = arrows.iter().map(|arrow| arrow.shift).collect();
+        Ok((points_to_array(py, points)?.into_any(), points_to_array(py, shifts)?.into_any()))
+    }
+
+    /// Volume that the stroke under way has moved outward and inward.
+    #[getter]
+    fn moved_volume(&self) -> (f64, f64) {
+        let moved = self.lock().moved_volume();
+        (moved.outward, moved.inward)
+    }
+
+    #[getter]
+    fn volume(&self) -> Option<f64> {
+        self.lock().volume()
+    }
+
+    #[getter]
+    fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let history = self.lock().history();
+        [
+            ("undoable", history.undoable),
+            ("redoable", history.redoable),
+            ("forgotten", history.forgotten),
+            ("bytes", history.bytes),
+        ]
+        .into_py_dict(py)
+    }
+
+    /// Numbers of the vertices that the render vertices belong to.
+    fn vertices_of_render_vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        let session = self.lock();
+        let count = session.buffers().positions.len() as u32;
+        let vertices: Vec<u32> = (0..count).map(|render| session.vertex_of(render)).collect();
+        vertices.into_pyarray(py).into_any()
+    }
+
+    fn __repr__(&self) -> String {
+        let session = self.lock();
+        format!("Session({} vertices, {} triangles)", session.vertex_count(), session.triangle_count())
+    }
+}
+
+impl Session {
+    fn lock(&self) -> MutexGuard<'_, session::Session> {
+        self.session.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Changes the session without the interpreter's lock, while no view of its buffers is held.
+    fn change<T: Send>(
+        &self,
+        py: Python<'_>,
+        change: impl FnOnce(&mut session::Session) -> Result<T, Failure> + Send,
+    ) -> Result<T, Failure> {
+        py.detach(|| {
+            let mut session = self.lock();
+            if self.views.load(Ordering::Acquire) > 0 {
+                return Err(Failure::Raised(PyBufferError::new_err(
+                    "views of the session's buffers are still held; drop or copy them before it changes",
+                )));
+            }
+            change(&mut session)
+        })
+    }
+
+    /// Makes a view of a buffer, which keeps the session from changing while it lives.
+    fn hold<'py>(
+        slf: &Bound<'py, Self>,
+        make: impl FnOnce(&session::Session, Bound<'py, PyAny>) -> Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let this = slf.get();
+        let session = this.lock();
+        this.views.fetch_add(1, Ordering::AcqRel);
+        let hold = Hold { _session: slf.clone().unbind(), views: Arc::clone(&this.views) };
+        Ok(make(&session, Bound::new(slf.py(), hold)?.into_any()))
+    }
+}
+
+fn hit_to_dict<'py>(py: Python<'py>, hit: &session::Hit) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("triangle", hit.triangle)?;
+    dict.set_item("vertices", hit.vertices)?;
+    dict.set_item("point", hit.point.to_array())?;
+    dict.set_item("normal", hit.normal.to_array())?;
+    dict.set_item("distance", hit.distance)?;
+    Ok(dict)
+}

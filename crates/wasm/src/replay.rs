@@ -1,0 +1,71 @@
+//! Recipes carried out.
+
+use isochore_mesh::Silent;
+use isochore_sculpt::{Meshes, Recipe as RecipeData, Report, Source, recipe::Format, replay};
+use wasm_bindgen::prelude::*;
+
+use crate::{error::thrown, mesh::Mesh};
+
+/// A recipe and the meshes that it names.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Recipe {
+    text: String,
+    recipe: RecipeData,
+    meshes: Meshes,
+}
+
+/// What became of a recipe's target.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Replay {
+    mesh: Mesh,
+    report: String,
+}
+
+#[wasm_bindgen]
+impl Recipe {
+    /// Reads a recipe: JSON where it begins with a brace, TOML otherwise.
+    #[wasm_bindgen(constructor)]
+    pub fn new(text: String) -> Result<Recipe, JsError> {
+        let format = if text.trim_start().starts_with('{') { Format::Json } else { Format::Toml };
+        let recipe = RecipeData::parse(&text, format, &[]).map_err(thrown)?;
+        Ok(Self { text, recipe, meshes: Meshes::new() })
+    }
+
+    /// Names of the meshes that it needs.
+    #[wasm_bindgen(getter, js_name = meshNames)]
+    pub fn mesh_names(&self) -> Vec<String> {
+        self.recipe.mesh_names().into_iter().map(str::to_owned).collect()
+    }
+
+    /// Gives it a mesh that it names.
+    #[wasm_bindgen(js_name = setMesh)]
+    pub fn set_mesh(&mut self, name: String, mesh: &Mesh) {
+        self.meshes.insert(name, mesh.mesh.clone());
+    }
+
+    /// Deforms the target.
+    pub fn run(&self) -> Result<Replay, JsError> {
+        let replay = replay(&self.recipe, &self.meshes, &Silent).map_err(thrown)?;
+        let source = Source { text: self.text.as_bytes(), overrides: &[] };
+        let report = Report::new(&self.recipe, source, &replay, &replay.deformed.mesh, &Silent).map_err(thrown)?;
+        let report = serde_json::to_string(&report).map_err(thrown)?;
+        Ok(Replay { mesh: Mesh { mesh: replay.deformed.mesh }, report })
+    }
+}
+
+#[wasm_bindgen]
+impl Replay {
+    /// The report as JSON.
+    #[wasm_bindgen(getter)]
+    pub fn report(&self) -> String {
+        self.report.clone()
+    }
+
+    /// The deformed mesh, which is taken out.
+    #[wasm_bindgen(js_name = intoMesh)]
+    pub fn into_mesh(self) -> Mesh {
+        self.mesh
+    }
+}

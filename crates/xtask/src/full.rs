@@ -1,0 +1,32 @@
+//! What is too heavy for every run of the tests: a browser, and Blender.
+
+use std::process::Command;
+
+use crate::{
+    environment::{install, interpreter},
+    shell::{TaskResult, cargo, run, workspace},
+};
+
+/// Blender as a Python module, at the last version for this Python.
+const BLENDER: [&str; 2] = ["bpy==5.0.1", "pytest==9.2.0"];
+
+/// Runs the tests in the browser and those of the Blender add-on.
+pub(crate) fn run_all() -> TaskResult {
+    // The task itself is compiled with what makes bindings, which nothing else needs.
+    run(&mut cargo(&[
+        "run",
+        "--release",
+        "--locked",
+        "--quiet",
+        "-p",
+        "xtask",
+        "--features",
+        "browser",
+        "--",
+        "browser",
+    ]))?;
+    let python = interpreter("blender", &BLENDER)?;
+    let source = workspace().display().to_string();
+    install(&python, &["--force-reinstall", "--no-deps", &source])?;
+    run(Command::new(python).args(["-m", "pytest", "--quiet", "-p", "no:cacheprovider", "crates/python/blender"]))
+}
