@@ -134,3 +134,48 @@ pub(super) fn lesser(a: f32, b: f32) -> f32 {
 pub(super) fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
+
+#[cfg(test)]
+mod tests {
+    use multiversion::multiversion;
+
+    use super::*;
+    use crate::{DistanceField, DistanceFieldOptions, Silent, primitives};
+
+    /// Nearest triangles and squared distances for packets along the diagonal of the grid, each beginning from what the last found.
+    #[inline(always)]
+    fn along_the_diagonal(search: &PacketSearch, grid: &Grid) -> Vec<([u32; LANES], [u32; LANES])> {
+        let bounds = grid.bounds();
+        let mut guesses = Vec::new();
+        let mut stack = Vec::new();
+        let mut found = Vec::new();
+        for step in 0..32 {
+            let middle = bounds.min + (bounds.max - bounds.min) * (f64::from(step) / 31.0);
+            let along =
+                |axis: usize, scale: f32| std::array::from_fn(|lane| middle[axis] as f32 + scale * (lane as f32 - 7.3));
+            let (x, y, z) = (along(0, 0.01), along(1, -0.02), along(2, 0.007));
+            let mut packet = Packet { x, y, z, squared: [f32::INFINITY; LANES], slot: [NOTHING; LANES] };
+            search.search(&mut packet, &guesses, &mut stack);
+            guesses = packet.slot.to_vec();
+            found.push((packet.slot, packet.squared.map(f32::to_bits)));
+        }
+        found
+    }
+
+    #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
+    fn in_widest_registers(search: &PacketSearch, grid: &Grid) -> Vec<([u32; LANES], [u32; LANES])> {
+        along_the_diagonal(search, grid)
+    }
+
+    #[test]
+    fn packets_find_the_same_bits_in_registers_of_any_width() {
+        let mesh = primitives::icosphere(1.0, 4);
+        let options = DistanceFieldOptions { resolution: 12, ..Default::default() };
+        let grid = *DistanceField::new(&mesh, &options, &Silent).unwrap().grid();
+        let search = PacketSearch::new(&Bvh::new(&mesh.positions, &mesh.triangles).unwrap(), &grid);
+        // Without the attribute, the search is compiled for the least that the target has.
+        let narrowest = along_the_diagonal(&search, &grid);
+        assert!(narrowest.iter().all(|(slots, _)| slots.iter().all(|&slot| slot != NOTHING)));
+        assert_eq!(in_widest_registers(&search, &grid), narrowest);
+    }
+}
