@@ -2,6 +2,8 @@
 //!
 //! What reading does beyond the libraries: seams are welded, indices and coordinates checked, everything is in double precision,
 //! and attributes go to corners.
+//!
+//! Arguments are the endings of the formats to compare; without any it is all.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "benchmarks print their results, and who is missing")]
 
@@ -52,7 +54,11 @@ fn compare_formats(mesh: &TriMesh, with: &str) {
         eprintln!("peers in Python are missing: {error}");
     }
     Comparison::print_heading();
+    let wanted: Vec<String> = std::env::args().skip(1).collect();
     for (format, ending) in FORMATS {
+        if !wanted.is_empty() && !wanted.iter().any(|wanted| wanted == ending) {
+            continue;
+        }
         let path = scratch().join("io").with_extension(ending);
         let write = |path: &Path| {
             let file = File::create(path).expect("the scratch folder can be written");

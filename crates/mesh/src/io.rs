@@ -15,6 +15,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod by_corner;
 mod format;
 mod gltf;
 mod obj;
@@ -36,7 +37,7 @@ pub use point_stream::{PointStream, PointStreamError};
 pub use read_error::{LineProblem, ParseError, ReadError};
 pub use write_error::WriteError;
 
-use crate::TriMesh;
+use crate::{CornerAttributes, TriMesh};
 
 /// Reads the mesh file at `path`, and the files beside it that it refers to.
 ///
@@ -67,11 +68,11 @@ pub fn read_bytes(format: Format, bytes: &[u8]) -> Result<TriMesh, ParseError> {
 type Resolve<'a> = &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>;
 
 fn parse(format: Format, bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, ParseError> {
-    let mesh = match format {
-        Format::Obj => obj::parse(bytes)?,
-        Format::Ply => ply::parse(bytes)?,
-        Format::Stl => stl::parse(bytes)?,
-        Format::Off => off::parse(bytes)?,
+    let (mesh, has_finite_corners) = match format {
+        Format::Obj => (obj::parse(bytes)?, false),
+        Format::Ply => (ply::parse(bytes)?, false),
+        Format::Stl => (stl::parse(bytes)?, false),
+        Format::Off => (off::parse(bytes)?, false),
         // Which of the two it is, the bytes tell.
         Format::Gltf | Format::Glb => gltf::parse(bytes, resolve)?,
     };
@@ -79,25 +80,14 @@ fn parse(format: Format, bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, 
         return Err(ParseError::Empty);
     }
     mesh.check_valid()?;
-    check_attributes(&mesh)?;
+    check_attributes(&mesh, has_finite_corners)?;
     Ok(mesh)
 }
 
-/// What is interpolated must be finite, or one bad number would spread.
-fn check_attributes(mesh: &TriMesh) -> Result<(), ParseError> {
-    fn first_bad<T>(corners: &[[T; 3]], is_finite: impl Fn(&T) -> bool) -> Option<usize> {
-        corners.iter().position(|corners| !corners.iter().all(&is_finite))
-    }
-    let corner = &mesh.corner;
-    let by_triangle = [
-        ("texture coordinate", corner.uvs.iter().find_map(|set| first_bad(set, |uv| uv.is_finite()))),
-        ("normal", first_bad(&corner.normals, |normal| normal.is_finite())),
-        ("color", first_bad(&corner.colors, |color| color.is_finite())),
-    ];
-    for (attribute, triangle) in by_triangle {
-        if let Some(triangle) = triangle {
-            return Err(ParseError::NonFinite { attribute, element: "triangle", number: triangle });
-        }
+/// What is interpolated must be finite, or one bad number would spread. Corners that are known to be so are not looked at.
+fn check_attributes(mesh: &TriMesh, has_finite_corners: bool) -> Result<(), ParseError> {
+    if !has_finite_corners {
+        check_corners(&mesh.corner)?;
     }
     let is_bad_skin = |skin: &Vec<(u32, f64)>| skin.iter().any(|(_, weight)| !weight.is_finite());
     let by_vertex = [
@@ -107,6 +97,23 @@ fn check_attributes(mesh: &TriMesh) -> Result<(), ParseError> {
     for (attribute, vertex) in by_vertex {
         if let Some(vertex) = vertex {
             return Err(ParseError::NonFinite { attribute, element: "vertex", number: vertex });
+        }
+    }
+    Ok(())
+}
+
+fn check_corners(corner: &CornerAttributes) -> Result<(), ParseError> {
+    fn first_bad<T>(corners: &[[T; 3]], is_finite: impl Fn(&T) -> bool) -> Option<usize> {
+        corners.iter().position(|corners| !corners.iter().all(&is_finite))
+    }
+    let by_triangle = [
+        ("texture coordinate", corner.uvs.iter().find_map(|set| first_bad(set, |uv| uv.is_finite()))),
+        ("normal", first_bad(&corner.normals, |normal| normal.is_finite())),
+        ("color", first_bad(&corner.colors, |color| color.is_finite())),
+    ];
+    for (attribute, triangle) in by_triangle {
+        if let Some(triangle) = triangle {
+            return Err(ParseError::NonFinite { attribute, element: "triangle", number: triangle });
         }
     }
     Ok(())

@@ -1,9 +1,6 @@
 //! Numbers by position, for welding.
 
-use std::hash::Hasher;
-
 use glam::DVec3;
-use rustc_hash::FxHasher;
 
 /// A hash table with linear probing that holds nothing but numbers; whoever asks knows their positions.
 #[derive(Debug)]
@@ -59,10 +56,51 @@ impl PositionTable {
 
     #[inline]
     fn first_slot(&self, key: [u64; 3]) -> usize {
-        let mut hasher = FxHasher::default();
-        key.iter().for_each(|&bits| hasher.write_u64(bits));
-        (hasher.finish().wrapping_mul(GOLDEN) >> self.shift) as usize
+        (hash(key) >> self.shift) as usize
     }
+}
+
+/// Bits of [`with_repeated_hash`] for a vertex, at least. Fewer, and more vertices share one by chance and are looked up
+/// in vain, about one in as many; more, and the bits do not fit into a cache.
+const BITS_PER_VERTEX: usize = 8;
+
+/// The `vertices` whose positions may occur twice among theirs, in their order: all that do, and few others.
+///
+/// Most files split few vertices or none. Two passes over a bit or two a vertex leave little for a [`PositionTable`],
+/// which waits for memory at every step.
+pub(crate) fn with_repeated_hash(positions: &[DVec3], vertices: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
+    let size = (BITS_PER_VERTEX * vertices.clone().count()).next_power_of_two().max(u64::BITS as usize);
+    let shift = u64::BITS - size.trailing_zeros();
+    // Which hashes there are, and which there are again.
+    let mut words = vec![[0_u64; 2]; size / u64::BITS as usize];
+    let place = |vertex: u32| {
+        let bit = hash(key(positions[vertex as usize])) >> shift;
+        ((bit / u64::from(u64::BITS)) as usize, 1 << (bit % u64::from(u64::BITS)))
+    };
+    for (word, bit) in vertices.clone().map(place) {
+        let [once, again] = &mut words[word];
+        *again |= *once & bit;
+        *once |= bit;
+    }
+    let mut repeated = Vec::new();
+    for vertex in vertices {
+        let (word, bit) = place(vertex);
+        if words[word][1] & bit != 0 {
+            repeated.push(vertex);
+        }
+    }
+    repeated
+}
+
+/// A number whose upper bits are spread evenly.
+#[inline]
+fn hash(key: [u64; 3]) -> u64 {
+    let mixed = key.iter().fold(0_u64, |hash, &bits| {
+        let product = (hash ^ bits).wrapping_mul(GOLDEN);
+        // Brings the signs down: a product alone keeps them in its uppermost bit, and mirror images would share a hash.
+        product ^ (product >> 32)
+    });
+    mixed.wrapping_mul(GOLDEN)
 }
 
 /// Bits of the coordinates, the same for both zeros.

@@ -1,7 +1,7 @@
 //! Merging vertices that files split at seams.
 
 use crate::TriMesh;
-use crate::position_table::PositionTable;
+use crate::position_table::{PositionTable, with_repeated_hash};
 
 impl TriMesh {
     /// This mesh with all vertices at the same position made one, as files need that split vertices at seams.
@@ -30,25 +30,27 @@ impl TriMesh {
     }
 
     fn welded_where(mut self, is_candidate: impl Fn(usize) -> bool) -> TriMesh {
-        let count = self.positions.len();
-        let mut table = PositionTable::with_capacity((0..count).filter(|&vertex| is_candidate(vertex)).count());
-        let mut kept: Vec<u32> = Vec::with_capacity(count);
-        let merged: Vec<u32> = (0..count)
-            .map(|vertex| {
-                let new = kept.len() as u32;
-                let position_of = |number: u32| self.positions[kept[number as usize] as usize];
-                let target = match is_candidate(vertex) {
-                    true => table.find_or_insert(self.positions[vertex], new, position_of),
-                    false => new,
-                };
-                if target == new {
-                    kept.push(vertex as u32);
-                }
-                target
-            })
-            .collect();
-        if kept.len() == count {
+        let candidates = (0..self.positions.len()).filter(|&vertex| is_candidate(vertex)).map(|vertex| vertex as u32);
+        let suspects = with_repeated_hash(&self.positions, candidates);
+        let position_of = |vertex: u32| self.positions[vertex as usize];
+        let mut table = PositionTable::with_capacity(suspects.len());
+        let find = |&vertex: &u32| table.find_or_insert(position_of(vertex), vertex, position_of);
+        let firsts: Vec<u32> = suspects.iter().map(find).collect();
+        if firsts == suspects {
             return self;
+        }
+        // First the old number of the first vertex at each one's position, then its new number.
+        let mut merged: Vec<u32> = (0..self.positions.len() as u32).collect();
+        suspects.iter().zip(firsts).for_each(|(&vertex, first)| merged[vertex as usize] = first);
+        let mut kept: Vec<u32> = Vec::with_capacity(merged.len());
+        for vertex in 0..merged.len() {
+            let first = merged[vertex] as usize;
+            if first == vertex {
+                merged[vertex] = kept.len() as u32;
+                kept.push(vertex as u32);
+            } else {
+                merged[vertex] = merged[first];
+            }
         }
         self.move_differing_colors_to_corners(&merged, &kept);
         self.keep_vertices(&kept);

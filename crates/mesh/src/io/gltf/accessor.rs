@@ -13,6 +13,9 @@ use crate::io::ParseError;
 /// memory; smaller, and sparse accessors of large meshes are refused.
 const MAX_IMPLICIT_COUNT: usize = 1 << 26;
 
+/// Bytes of the largest element there is, a matrix of four rows and columns.
+const MAX_ELEMENT_SIZE: usize = 64;
+
 /// Where an accessor's elements lie.
 struct Layout<'a> {
     bytes: &'a [u8],
@@ -29,48 +32,68 @@ impl Document<'_> {
         }
     }
 
-    /// Elements of `N` components each, normalized integers turned to fractions.
-    pub(super) fn vectors<const N: usize>(&self, index: usize) -> Result<Vec<[f64; N]>, ParseError> {
+    /// What `make` makes of elements of `N` components each, normalized integers turned to fractions.
+    pub(super) fn vectors<T: Clone, const N: usize>(
+        &self,
+        index: usize,
+        make: impl Fn([f64; N]) -> T,
+    ) -> Result<Vec<T>, ParseError> {
         let is_normalized = self.accessor(index)?.normalized;
         match self.component(index)?.0 {
             // Nearly all accessors are such ones, and need not ask of every number what it is.
-            ComponentType::F32 => self.elements(index, single),
-            component => self.elements(index, |bytes| number(component, is_normalized, bytes)),
+            ComponentType::F32 => self.elements(index, N, |bytes| {
+                let numbers = bytes.as_chunks().0;
+                make(std::array::from_fn(|i| single(numbers[i])))
+            }),
+            component => self.elements(index, N, |bytes| {
+                let size = component.size();
+                make(std::array::from_fn(|i| number(component, is_normalized, &bytes[i * size..])))
+            }),
         }
     }
-
-    /// Whole numbers, one an element.
-    pub(super) fn indices(&self, index: usize) -> Result<Vec<u32>, ParseError> {
-        let indices = match self.component(index)?.0 {
-            ComponentType::U32 => self.elements(index, whole)?,
-            component @ (ComponentType::U8 | ComponentType::U16) => {
-                self.elements(index, |bytes| number(component, false, bytes) as u32)?
-            }
+    /// Whole numbers, `N` at a time; those left over are left out.
+    pub(super) fn indices<const N: usize>(&self, index: usize) -> Result<Vec<[u32; N]>, ParseError> {
+        let component = match self.component(index)? {
+            (component @ (ComponentType::U8 | ComponentType::U16 | ComponentType::U32), _) => component,
             _ => return Err(malformed(format!("accessor {index} should hold unsigned integers"))),
         };
-        Ok(indices.into_iter().map(|[value]| value).collect())
+        let accessor = self.accessor(index)?;
+        if let (ComponentType::U32, Some(view), None) = (component, accessor.buffer_view, &accessor.sparse) {
+            self.expect_components(index, 1)?;
+            let layout = self.accessor_layout(index, accessor, view.value(), 4)?;
+            if layout.stride == 4 {
+                let (numbers, _) = layout.bytes[..4 * layout.count].as_chunks::<4>();
+                let mut groups = vec![[0; N]; layout.count / N];
+                let places = groups.as_flattened_mut().iter_mut().zip(numbers);
+                places.for_each(|(place, number)| *place = u32::from_le_bytes(*number));
+                return Ok(groups);
+            }
+        }
+        let numbers: Vec<u32> = self.elements(index, 1, |bytes| number(component, false, bytes) as u32)?;
+        Ok(numbers.as_chunks().0.to_vec())
     }
 
-    /// Elements of `N` components each, which `decode` makes of their bytes.
-    fn elements<T: Copy + Default, const N: usize>(
+    /// What `make` makes of the bytes of each element, of the given number of components; zeros where the file has none.
+    fn elements<T: Clone>(
         &self,
         index: usize,
-        decode: impl Fn(&[u8]) -> T,
-    ) -> Result<Vec<[T; N]>, ParseError> {
+        components: usize,
+        make: impl Fn(&[u8]) -> T,
+    ) -> Result<Vec<T>, ParseError> {
         let accessor = self.accessor(index)?;
-        if self.components(index)? != N {
-            return Err(malformed(format!("accessor {index} should have {N} components")));
-        }
-        let (_, size) = self.component(index)?;
-        let element = |bytes: &[u8]| std::array::from_fn(|i| decode(&bytes[i * size..]));
-        let mut elements = match accessor.buffer_view {
+        self.expect_components(index, components)?;
+        let size = components * self.component(index)?.1;
+        let mut elements: Vec<T> = match accessor.buffer_view {
             Some(view) => {
-                let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-                let layout = self.layout(index, view.value(), offset, accessor.count.0, N * size)?;
-                (0..layout.count).map(|i| element(&layout.bytes[i * layout.stride..])).collect()
+                let layout = self.accessor_layout(index, accessor, view.value(), size)?;
+                let mut elements = Vec::with_capacity(layout.count);
+                for i in 0..layout.count {
+                    elements.push(make(&layout.bytes[i * layout.stride..][..size]));
+                }
+                elements
             }
             None => match usize::try_from(accessor.count.0) {
-                Ok(count) if count <= MAX_IMPLICIT_COUNT => vec![[T::default(); N]; count],
+                Ok(count) if count <= MAX_IMPLICIT_COUNT => vec![make(&[0; MAX_ELEMENT_SIZE][..size]); count],
                 _ => return Err(malformed(format!("accessor {index} has too many elements without data"))),
             },
         };
@@ -82,15 +105,34 @@ impl Document<'_> {
             let indices = (sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0);
             let indices = self.layout(index, indices.0, indices.1, sparse.count.0, index_size)?;
             let values = (sparse.values.buffer_view.value(), sparse.values.byte_offset.0);
-            let values = self.layout(index, values.0, values.1, sparse.count.0, N * size)?;
+            let values = self.layout(index, values.0, values.1, sparse.count.0, size)?;
             for i in 0..indices.count {
                 let target = number(kind.0, false, &indices.bytes[i * indices.stride..]) as usize;
                 let slot = elements.get_mut(target);
                 *slot.ok_or_else(|| malformed(format!("accessor {index} has a sparse index out of range")))? =
-                    element(&values.bytes[i * values.stride..]);
+                    make(&values.bytes[i * values.stride..][..size]);
             }
         }
         Ok(elements)
+    }
+
+    fn expect_components(&self, index: usize, components: usize) -> Result<(), ParseError> {
+        match self.components(index)? == components {
+            true => Ok(()),
+            false => Err(malformed(format!("accessor {index} should have {components} components"))),
+        }
+    }
+
+    /// Where the elements of an accessor lie that has a buffer view.
+    fn accessor_layout(
+        &self,
+        index: usize,
+        accessor: &Accessor,
+        view: usize,
+        size: usize,
+    ) -> Result<Layout<'_>, ParseError> {
+        let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
+        self.layout(index, view, offset, accessor.count.0, size)
     }
 
     fn accessor(&self, index: usize) -> Result<&Accessor, ParseError> {
@@ -130,8 +172,8 @@ impl Document<'_> {
     }
 }
 
-fn single(bytes: &[u8]) -> f64 {
-    f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
+fn single(bytes: [u8; 4]) -> f64 {
+    f64::from(f32::from_le_bytes(bytes))
 }
 
 fn whole(bytes: &[u8]) -> u32 {
@@ -145,7 +187,7 @@ fn number(component: ComponentType, is_normalized: bool, bytes: &[u8]) -> f64 {
         ComponentType::I16 => (f64::from(i16::from_le_bytes([bytes[0], bytes[1]])), f64::from(i16::MAX)),
         ComponentType::U16 => (f64::from(u16::from_le_bytes([bytes[0], bytes[1]])), f64::from(u16::MAX)),
         ComponentType::U32 => (f64::from(whole(bytes)), f64::from(u32::MAX)),
-        ComponentType::F32 => return single(bytes),
+        ComponentType::F32 => return single([bytes[0], bytes[1], bytes[2], bytes[3]]),
     };
     if is_normalized { (value / full).max(-1.0) } else { value }
 }

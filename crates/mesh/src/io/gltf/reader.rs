@@ -9,12 +9,14 @@ use serde_json::Value;
 
 use super::document::{Document, malformed};
 use super::scene::Instance;
+use crate::io::by_corner::by_corner;
 use crate::io::{ParseError, Resolve};
 use crate::measure::triangle_normal;
 use crate::{CornerAttributes, TriMesh, VertexAttributes};
 
-/// Reads the scene of a document as one mesh; equal positions become one vertex.
-pub(in crate::io) fn parse(bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, ParseError> {
+/// Reads the scene of a document as one mesh; equal positions become one vertex. Also says whether what the corners carry
+/// is known to be finite.
+pub(in crate::io) fn parse(bytes: &[u8], resolve: Resolve<'_>) -> Result<(TriMesh, bool), ParseError> {
     let document = Document::open(bytes, resolve)?;
     let instances = document.instances()?;
     let skin = common_skin(&instances);
@@ -22,9 +24,11 @@ pub(in crate::io) fn parse(bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh
     for instance in &instances {
         soup.add_instance(&document, instance, skin.is_some())?;
     }
+    // Corners are six times as many as vertices; not those of normals that triangles have to lend.
+    let has_finite_corners = soup.has_finite_attributes() && !soup.lacks_normals();
     let mut mesh = soup.into_mesh(&document.json).welded();
     mesh.assets.gltf = document.carried_assets(skin, resolve)?.map(Arc::new);
-    Ok(mesh)
+    Ok((mesh, has_finite_corners))
 }
 
 /// The skin of all instances, if they have the same one.
@@ -129,11 +133,8 @@ impl Soup {
                     base
                 }
             };
-            let indices = match primitive.indices {
-                Some(accessor) => document.indices(accessor.value())?,
-                None => (0..(self.positions.len() - base) as u32).collect(),
-            };
-            self.add_triangles(&indices, mode, base, primitive, instance)?;
+            let triangles = triangles(document, primitive, mode, self.positions.len() - base)?;
+            self.add_triangles(triangles, base, primitive, instance)?;
         }
         Ok(())
     }
@@ -148,7 +149,13 @@ impl Soup {
         let number = instance.mesh;
         let accessor = attributes.positions;
         let accessor = accessor.ok_or_else(|| malformed(format!("mesh {number} has a primitive without positions")))?;
-        let positions = document.vectors::<3>(accessor)?;
+        let to_world = instance.world_from_mesh;
+        let is_in_place = to_world == glam::DMat4::IDENTITY;
+        let positions: Vec<DVec3> = match is_in_place {
+            // A transformation leaves no negative zero either.
+            true => document.vectors(accessor, |[x, y, z]| DVec3::new(x + 0.0, y + 0.0, z + 0.0))?,
+            false => document.vectors(accessor, |position| to_world.transform_point3(position.into()))?,
+        };
         let base = self.positions.len();
         let count = positions.len();
         let expect = |found: usize| match found == count {
@@ -158,38 +165,35 @@ impl Soup {
         if base + count > u32::MAX as usize {
             return Err(malformed("the scene has more vertices than 32-bit indices can name"));
         }
-        let to_world = instance.world_from_mesh;
-        let place = |position| to_world.transform_point3(DVec3::from_array(position));
         match base {
-            0 => self.positions = positions.into_iter().map(place).collect(),
-            _ => self.positions.extend(positions.into_iter().map(place)),
+            0 => self.positions = positions,
+            _ => self.positions.extend(positions),
         }
         if let Some(accessor) = attributes.normals {
-            let normals = document.vectors::<3>(accessor)?;
-            expect(normals.len())?;
             // Normals are covectors: they follow the inverse transpose, here up to a positive factor.
             let linear = DMat3::from_mat4(to_world);
             let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
             let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * linear.determinant().signum();
-            let is_in_place = to_world == glam::DMat4::IDENTITY;
             let turn = |normal| match DVec3::from_array(normal) {
                 normal if is_in_place => normal,
                 normal => (cofactors * normal).normalize_or_zero(),
             };
-            self.normals.add(base, normals.into_iter().map(turn).collect(), DVec3::ZERO);
+            let normals = document.vectors(accessor, turn)?;
+            expect(normals.len())?;
+            self.normals.add(base, normals, DVec3::ZERO);
         }
         for (set, &accessor) in attributes.uvs.iter().enumerate() {
-            let uvs = document.vectors::<2>(accessor)?;
+            let uvs = document.vectors(accessor, DVec2::from_array)?;
             expect(uvs.len())?;
             if self.uvs.len() <= set {
                 self.uvs.push(Column::default());
             }
-            self.uvs[set].add(base, uvs.into_iter().map(DVec2::from_array).collect(), DVec2::ZERO);
+            self.uvs[set].add(base, uvs, DVec2::ZERO);
         }
         if let Some(accessor) = attributes.colors {
             let colors: Vec<DVec4> = match document.components(accessor)? {
-                3 => document.vectors::<3>(accessor)?.into_iter().map(|[r, g, b]| DVec4::new(r, g, b, 1.0)).collect(),
-                _ => document.vectors::<4>(accessor)?.into_iter().map(DVec4::from_array).collect(),
+                3 => document.vectors(accessor, |[r, g, b]| DVec4::new(r, g, b, 1.0))?,
+                _ => document.vectors(accessor, DVec4::from_array)?,
             };
             expect(colors.len())?;
             self.colors.add(base, colors, DVec4::ONE);
@@ -197,7 +201,8 @@ impl Soup {
         if with_skin && !attributes.joints.is_empty() {
             let mut influences = vec![Vec::new(); count];
             for (&joints, &weights) in attributes.joints.iter().zip(&attributes.weights) {
-                let (joints, weights) = (document.vectors::<4>(joints)?, document.vectors::<4>(weights)?);
+                let joints: Vec<[f64; 4]> = document.vectors(joints, |joints| joints)?;
+                let weights: Vec<[f64; 4]> = document.vectors(weights, |weights| weights)?;
                 expect(joints.len())?;
                 expect(weights.len())?;
                 for ((influences, joints), weights) in influences.iter_mut().zip(joints).zip(weights) {
@@ -212,35 +217,32 @@ impl Soup {
 
     fn add_triangles(
         &mut self,
-        indices: &[u32],
-        mode: Mode,
+        mut triangles: Vec<[u32; 3]>,
         base: usize,
         primitive: &Primitive,
         instance: &Instance,
     ) -> Result<(), ParseError> {
         let vertices = self.positions.len() - base;
-        if let Some(&index) = indices.iter().find(|&&index| index as usize >= vertices) {
+        let corners = triangles.as_flattened();
+        if corners.iter().fold(0, |largest, &index| index.max(largest)) as usize >= vertices
+            && let Some(index) = corners.iter().find(|&&index| index as usize >= vertices)
+        {
             let number = instance.mesh;
             return Err(malformed(format!("mesh {number} names vertex {index}, but the primitive has {vertices}")));
         }
-        let start = self.triangles.len();
-        self.triangles.reserve_exact(if mode == Mode::Triangles { indices.len() / 3 } else { indices.len() });
+        // Strips are joined by triangles that name a vertex twice.
+        triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
         // A mirroring node turns the triangles over.
-        let is_mirrored = instance.world_from_mesh.determinant() < 0.0;
-        let mut push = |[a, b, c]: [u32; 3]| {
-            // Strips are joined by triangles that name a vertex twice.
-            if a != b && b != c && c != a {
-                let triangle = if is_mirrored { [a, c, b] } else { [a, b, c] };
-                self.triangles.push(triangle.map(|vertex| vertex + base as u32));
-            }
-        };
-        match mode {
-            Mode::TriangleStrip => {
-                let turn = |(i, t): (usize, &[u32])| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
-                indices.windows(3).enumerate().map(turn).for_each(push);
-            }
-            Mode::TriangleFan => indices.windows(2).skip(1).for_each(|t| push([indices[0], t[0], t[1]])),
-            _ => indices.as_chunks().0.iter().copied().for_each(push),
+        if instance.world_from_mesh.determinant() < 0.0 {
+            triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        let start = self.triangles.len();
+        match start {
+            0 => self.triangles = triangles,
+            _ => self.triangles.extend(triangles),
+        }
+        if base > 0 {
+            self.triangles[start..].as_flattened_mut().iter_mut().for_each(|vertex| *vertex += base as u32);
         }
         if let Some(material) = primitive.material {
             let count = self.triangles.len() - start;
@@ -249,26 +251,29 @@ impl Soup {
         Ok(())
     }
 
+    fn has_finite_attributes(&self) -> bool {
+        self.normals.0.iter().all(|normal| normal.is_finite())
+            && self.uvs.iter().all(|set| set.0.iter().all(|uv| uv.is_finite()))
+            && self.colors.0.iter().all(|color| color.is_finite())
+    }
+
+    /// True where some vertices have a normal and others do not.
+    fn lacks_normals(&self) -> bool {
+        let Column(normals) = &self.normals;
+        !normals.is_empty() && (normals.len() < self.positions.len() || normals.contains(&DVec3::ZERO))
+    }
+
     fn into_mesh(self, json: &Value) -> TriMesh {
+        let lacks_normals = self.lacks_normals();
         let Self { positions, triangles, .. } = self;
         let count = positions.len();
         let normals = self.normals.complete(count, DVec3::ZERO);
-        let corner_normals = match normals.is_empty() {
-            true => Vec::new(),
-            false => triangles
-                .iter()
-                .map(|triangle| {
-                    // Without normals a mesh is shaded flat, says the format.
-                    let flat = || triangle_normal(triangle.map(|vertex| positions[vertex as usize]));
-                    triangle.map(|vertex| match normals[vertex as usize] {
-                        DVec3::ZERO => flat(),
-                        normal => normal,
-                    })
-                })
-                .collect(),
+        let corner_normals = match lacks_normals {
+            true => triangles.iter().map(|triangle| corner_normals(triangle, &positions, &normals)).collect(),
+            false => by_corner(&triangles, &normals),
         };
-        let by_corner = |set: Vec<DVec2>| triangles.iter().map(|t| t.map(|vertex| set[vertex as usize])).collect();
-        let uvs = self.uvs.into_iter().map(|set| by_corner(set.complete(count, DVec2::ZERO))).collect();
+        let sets = self.uvs.into_iter();
+        let uvs = sets.map(|set| by_corner(&triangles, &set.complete(count, DVec2::ZERO))).collect();
         let materials = self.materials.complete(triangles.len(), None);
         let (materials, triangle_materials) = name_materials(json, &materials);
         let mut skin = self.influences.complete(count, Vec::new());
@@ -285,6 +290,39 @@ impl Soup {
             ..TriMesh::default()
         }
     }
+}
+
+/// Normals of the corners; that of the triangle, where vertices have none: without normals a mesh is shaded flat, says the
+/// format.
+fn corner_normals(triangle: &[u32; 3], positions: &[DVec3], normals: &[DVec3]) -> [DVec3; 3] {
+    let flat = || triangle_normal(triangle.map(|vertex| positions[vertex as usize]));
+    triangle.map(|vertex| match normals[vertex as usize] {
+        DVec3::ZERO => flat(),
+        normal => normal,
+    })
+}
+
+/// The triangles of a primitive that has this many vertices, numbered from its first one.
+fn triangles(
+    document: &Document<'_>,
+    primitive: &Primitive,
+    mode: Mode,
+    vertices: usize,
+) -> Result<Vec<[u32; 3]>, ParseError> {
+    let corners: Vec<[u32; 1]> = match primitive.indices {
+        Some(accessor) if mode == Mode::Triangles => return document.indices(accessor.value()),
+        Some(accessor) => document.indices(accessor.value())?,
+        None => (0..vertices as u32).map(|vertex| [vertex]).collect(),
+    };
+    let corners = corners.as_flattened();
+    Ok(match mode {
+        Mode::TriangleStrip => {
+            let turn = |(i, t): (usize, &[u32; 3])| if i % 2 == 0 { *t } else { [t[1], t[0], t[2]] };
+            corners.array_windows().enumerate().map(turn).collect()
+        }
+        Mode::TriangleFan => corners.array_windows().skip(1).map(|&[b, c]| [corners[0], b, c]).collect(),
+        _ => corners.as_chunks().0.to_vec(),
+    })
 }
 
 /// Names of the document's materials, with the unnamed one after them where some triangles have none.

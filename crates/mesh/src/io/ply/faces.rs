@@ -7,6 +7,7 @@ use super::header::{Element, Property};
 use super::number::{ByteOrder, Number};
 use super::vertices::Vertices;
 use crate::io::ParseError;
+use crate::io::by_corner::by_corner;
 use crate::io::polygon::triangulate;
 
 /// Lists of a face that bear on the mesh, by the names of their properties.
@@ -64,17 +65,13 @@ impl<'v> Faces<'v> {
     }
 
     /// Reads triangles for as long as they are as nearly all files have them, and returns how many there were: binary, little
-    /// endian, nothing but a list of three 32-bit indices in range, and vertices whose attributes need not go to corners.
+    /// endian, nothing but a list of three 32-bit indices in range.
     fn read_plain_triangles(&mut self, body: &mut Body<'_>, element: &Element) -> usize {
         let [Property { name, length: Some(Number::U8), number: Number::I32 | Number::U32 }] = &element.properties[..]
         else {
             return 0;
         };
-        let is_plain = body.order == Some(ByteOrder::Little)
-            && LISTS[0].contains(&name.as_str())
-            && self.vertices.uvs.is_empty()
-            && self.vertices.normals.is_empty();
-        if !is_plain {
+        if body.order != Some(ByteOrder::Little) || !LISTS[0].contains(&name.as_str()) {
             return 0;
         }
         let count = self.vertices.positions.len();
@@ -88,6 +85,8 @@ impl<'v> Faces<'v> {
             self.triangles.push(triangle);
         }
         body.rest = &body.rest[13 * self.triangles.len()..];
+        self.uvs = by_corner(&self.triangles, &self.vertices.uvs);
+        self.normals = by_corner(&self.triangles, &self.vertices.normals);
         self.triangles.len()
     }
 
