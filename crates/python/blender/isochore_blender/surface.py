@@ -1,0 +1,165 @@
+"""The mesh of an object as triangles, and what it carries, interpolated on the triangles that these become."""
+
+import numpy as np
+
+FIELDS = {
+    "FLOAT": ("value", 1, np.float32),
+    "FLOAT2": ("vector", 2, np.float32),
+    "FLOAT_VECTOR": ("vector", 3, np.float32),
+    "FLOAT_COLOR": ("color", 4, np.float32),
+    "BYTE_COLOR": ("color", 4, np.float32),
+    "INT": ("value", 1, np.int32),
+    "INT8": ("value", 1, np.int8),
+    "BOOLEAN": ("value", 1, bool),
+}
+"""Where attributes of a type have their numbers, how many, and of which kind. Those of other types are lost."""
+
+ON_EDGE = 1e-9
+"""Barycentric coordinates below this are 0. If smaller than rounding, edges cut elsewhere than in the middle were lost;
+if larger, short edges near another were taken for a part of it."""
+
+
+class Surface:
+    """Triangles of the polygons of `target`, in which every corner knows its vertex, loop and polygon.
+
+    mirrored: turn the triangles over, as an object does that is scaled by a negative number.
+    """
+
+    def __init__(self, target, mirrored):
+        self.target, self.mesh, self.order = target, target.data, -1 if mirrored else 1
+        self.mesh.calc_loop_triangles()
+        faces = self.mesh.loop_triangles
+        self.positions = read(self.mesh.vertices, "co", 3, np.float32).astype(float)
+        self.loops = read(faces, "loops", 3, np.int32)[:, :: self.order]
+        self.triangles = read(faces, "vertices", 3, np.int32)[:, :: self.order]
+        self.polygons = read(faces, "polygon_index", 1, np.int32)
+
+    def uvs(self):
+        """Two sets of texture coordinates that tell, after refinement, where a corner came from.
+
+        The first is the barycentric coordinates of the second and third corner. The second is the number of the triangle, the
+        same at all corners, so that all parts of a triangle have it.
+        """
+        corners = np.tile([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], (len(self.triangles), 1, 1))
+        numbers = np.repeat(np.arange(len(self.triangles), dtype=float), 6).reshape(-1, 3, 2)
+        return [corners, numbers]
+
+    def move(self, positions):
+        """Moves the vertices and keeps the polygons."""
+        self.mesh.vertices.foreach_set("co", positions.astype(np.float32).ravel())
+        self.mesh.update()
+
+    def replace(self, positions, triangles, uvs):
+        """Puts refined triangles, with the sets of `uvs` that came of ours, in place of the polygons. Returns what was lost."""
+        corners, numbers = uvs
+        weights = np.dstack([1.0 - corners.sum(axis=2), corners])[:, :: self.order, :]
+        source = np.rint(numbers[:, 0, 0]).astype(int)
+        triangles = triangles[:, :: self.order].astype(np.int32)
+        attributes, lost = self._attributes()
+        groups = [(group.name, group.lock_weight) for group in self.target.vertex_groups]
+        active_group = self.target.vertex_groups.active_index
+        group_weights, members = self._group_weights()
+        edges = read(self.mesh.edges, "vertices", 2, np.int32)
+        uv_layers, colors = self.mesh.uv_layers, self.mesh.color_attributes
+        shown_uvs = uv_layers.active_index, [layer.active_render for layer in uv_layers]
+        shown_colors = colors.active_color_index, colors.render_color_index
+
+        self._rebuild(positions, triangles)
+        # Any corner of a new vertex tells it; those of an old vertex agree.
+        corner = np.empty(len(positions), int)
+        corner[triangles.ravel()] = np.arange(triangles.size)
+        at = {
+            "POINT": (self.triangles[source].repeat(3, axis=0)[corner], weights.reshape(-1, 3)[corner]),
+            "CORNER": (self.loops[source].repeat(3, axis=0), weights.reshape(-1, 3)),
+            "FACE": (self.polygons[source][:, None], np.ones((len(source), 1))),
+            "EDGE": self._edges(triangles, source, weights, edges),
+        }
+        for name, kind, domain, values in attributes:
+            found = self.mesh.attributes.get(name) or self.mesh.attributes.new(name, kind, domain)
+            field = FIELDS[kind][0]
+            found.data.foreach_set(field, interpolated(values, *at[domain]).ravel())
+        self._set_groups(groups, *(interpolated(values, *at["POINT"]) for values in (group_weights, members)))
+        self.target.vertex_groups.active_index = active_group
+        if uv_layers:
+            uv_layers.active_index = shown_uvs[0]
+            for layer, active in zip(uv_layers, shown_uvs[1], strict=True):
+                layer.active_render = active
+        if colors:
+            colors.active_color_index, colors.render_color_index = shown_colors
+        self.mesh.update()
+        return lost
+
+    def _rebuild(self, positions, triangles):
+        mesh = self.mesh
+        mesh.clear_geometry()
+        mesh.vertices.add(len(positions))
+        mesh.vertices.foreach_set("co", positions.astype(np.float32).ravel())
+        mesh.loops.add(triangles.size)
+        mesh.loops.foreach_set("vertex_index", triangles.ravel())
+        mesh.polygons.add(len(triangles))
+        mesh.polygons.foreach_set("loop_start", np.arange(0, triangles.size, 3, dtype=np.int32))
+        mesh.update(calc_edges=True)
+
+    def _attributes(self):
+        """Names, types, domains and values of all attributes but the topology and the selection, and the names of others."""
+        named = [a for a in self.mesh.attributes if not a.name.startswith(".") and a.name != "position"]
+        lost = [a.name for a in named if a.data_type not in FIELDS]
+        kept = [a for a in named if a.data_type in FIELDS]
+        return [(a.name, a.data_type, a.domain, read(a.data, *FIELDS[a.data_type])) for a in kept], lost
+
+    def _group_weights(self):
+        """Weights, and 1 where a vertex is a member: (vertices, groups) each."""
+        weights = np.zeros((2, len(self.positions), len(self.target.vertex_groups)), np.float32)
+        for vertex in self.mesh.vertices:
+            for group in vertex.groups:
+                weights[:, vertex.index, group.group] = group.weight, 1.0
+        return weights
+
+    def _set_groups(self, groups, weights, members):
+        for index, (name, locked) in enumerate(groups):
+            group = self.target.vertex_groups.new(name=name)
+            group.lock_weight = locked
+            for vertex in np.flatnonzero(members[:, index] > 0).tolist():
+                group.add([vertex], min(float(weights[vertex, index]), 1.0), "REPLACE")
+
+    def _edges(self, triangles, source, weights, edges):
+        """For every new edge the old one that it is a part of, and 1; 0 where it is part of none."""
+        count = triangles.max() + 1
+        ends, old_ends = np.roll(triangles, -1, axis=1), self.triangles[source][:, :: self.order]
+        at, found = np.zeros((len(self.mesh.edges), 1), int), np.zeros((len(self.mesh.edges), 1))
+        new, old = edge_keys(read(self.mesh.edges, "vertices", 2, np.int32), count), edge_keys(edges, count)
+        new_order, old_order = np.argsort(new), np.argsort(old)
+        across = np.abs(weights) < ON_EDGE
+        across &= np.roll(across, -1, axis=1)
+        for opposite in range(3):
+            triangle, corner = np.nonzero(across[:, :, opposite])
+            part = edge_keys(np.stack([triangles[triangle, corner], ends[triangle, corner]], axis=1), count)
+            whole = edge_keys(np.delete(old_ends, opposite, axis=1)[triangle], count)
+            part = new_order[np.searchsorted(new, part, sorter=new_order)]
+            place = np.minimum(np.searchsorted(old, whole, sorter=old_order), len(old) - 1)
+            # A diagonal of a polygon is no edge.
+            place = old_order[place]
+            real = old[place] == whole
+            at[part[real], 0], found[part[real], 0] = place[real], 1.0
+        return at, found
+
+
+def edge_keys(ends, count):
+    """One number for every pair of vertices, whichever comes first."""
+    ends = np.sort(ends.astype(np.int64), axis=1)
+    return ends[:, 0] * count + ends[:, 1]
+
+
+def read(collection, field, width, kind):
+    """The numbers `field` of all items of a collection, (N, width), or (N,) where there is one each."""
+    values = np.empty(len(collection) * width, kind)
+    collection.foreach_get(field, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+def interpolated(values, at, weights):
+    """Sums of `values[at]` by `weights`; what is no real number is that of the heaviest, or 0 where none weighs."""
+    if values.dtype != np.float32:
+        rows, heaviest = np.arange(len(at)), weights.argmax(axis=1)
+        return values[at[rows, heaviest]] * (weights[rows, heaviest] > 0)
+    return np.einsum("nk,nk...->n...", weights, values[at]).astype(np.float32)

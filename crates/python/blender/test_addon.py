@@ -1,0 +1,211 @@
+"""The add-on on a cube with everything on it that a mesh of Blender carries."""
+
+import bpy  # before bmesh and mathutils, which come with it
+import bmesh
+import isochore_blender
+import numpy as np
+import pytest
+from isochore_blender.surface import read
+
+BALL = """
+recipe = 1
+[target]
+mesh = "whatever.obj"
+[tools.ball]
+shape = { kind = "sphere", radius = 0.5 }
+support = 0.4
+[[stroke]]
+kind = "move"
+tool = "ball"
+keys = [{ at = [3, 0, 2.0] }, { at = [3, 0, 1.3] }]
+[refine]
+max_edge = 0.25
+[promise]
+volume = 1e-6
+"""
+"""Presses a ball into the top of a cube that stands at x = 3. The add-on never reads the file of the target."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def addon():
+    isochore_blender.register()
+    yield
+    isochore_blender.unregister()
+
+
+@pytest.fixture
+def cube():
+    """A cube of edge 2 in 4 x 4 quads a side, at x = 3 and scaled by 2 from half its size."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.mesh.primitive_cube_add(size=1)
+    cube = bpy.context.object
+    cube.location, cube.scale = (3, 0, 0), (2, 2, 2)
+    mesh = cube.data
+    shape = bmesh.new()
+    shape.from_mesh(mesh)
+    bmesh.ops.subdivide_edges(shape, edges=shape.edges, cuts=3, use_grid_fill=True)
+    shape.to_mesh(mesh)
+    positions = read(mesh.vertices, "co", 3, np.float32)
+    corners = positions[read(mesh.loops, "vertex_index", 1, np.int32)]
+    second = mesh.uv_layers.new(name="second")
+    second.data.foreach_set("uv", (corners[:, :2] * [1, 0.5]).astype(np.float32).ravel())
+    second.active_render = True
+    mesh.color_attributes.new("painted", "FLOAT_COLOR", "POINT").data.foreach_set("color", rgba(positions).ravel())
+    mesh.color_attributes.new("corners", "FLOAT_COLOR", "CORNER").data.foreach_set("color", rgba(corners).ravel())
+    for name, axis in [("right", 0), ("top", 2)]:
+        group = cube.vertex_groups.new(name=name)
+        for index in np.flatnonzero(positions[:, axis] > 0).tolist():
+            group.add([index], float(positions[index, axis]) + 0.5, "REPLACE")
+    for name in ["sides", "top"]:
+        mesh.materials.append(bpy.data.materials.new(name))
+    for polygon in mesh.polygons:
+        polygon.material_index = int(polygon.normal.z > 0.5)
+    sharp = mesh.attributes.new("sharp_edge", "BOOLEAN", "EDGE")
+    sharp.data.foreach_set("value", on_ridge(mesh, positions))
+    bpy.context.view_layer.update()
+    return cube
+
+
+def rgba(positions):
+    return np.hstack([positions + 0.5, np.ones((len(positions), 1))]).astype(np.float32)
+
+
+def on_ridge(mesh, rest):
+    """By edge: whether it lies on an edge of the cube, so that both its ends are on the same two sides."""
+    ends = rest[read(mesh.edges, "vertices", 2, np.int32)]
+    return ((np.abs(ends) > 0.5 - 1e-6).all(axis=1) & (np.abs(ends[:, 0] - ends[:, 1]) < 1e-6)).sum(axis=1) == 2
+
+
+def deform(recipe):
+    bpy.data.texts.new("recipe").write(recipe)
+    return bpy.ops.object.isochore_deform(text=bpy.data.texts[-1].name)
+
+
+def volume(target):
+    shape = bmesh.new()
+    shape.from_mesh(target.data)
+    shape.transform(target.matrix_world)
+    return shape.calc_volume(signed=True)
+
+
+def weights(target, name):
+    """By vertex; NaN where it is no member."""
+    group = target.vertex_groups[name].index
+    found = ([g.weight for g in vertex.groups if g.group == group] for vertex in target.data.vertices)
+    return np.array([weight[0] if weight else np.nan for weight in found])
+
+
+def by_side(target, rest):
+    """UVs of the first layer as an affine function of the rest position, one for each side of the cube."""
+    mesh = target.data
+    vertices = read(mesh.loops, "vertex_index", 1, np.int32)
+    uvs = read(mesh.uv_layers["UVMap"].data, "uv", 2, np.float32)
+    maps = {}
+    for polygon in mesh.polygons:
+        loops = list(polygon.loop_indices)
+        corners = rest[vertices[loops]].astype(float)
+        side = tuple(np.where(np.ptp(corners, axis=0) < 1e-6, np.sign(corners[0]), 0))
+        rows = np.hstack([corners, np.ones((len(loops), 1))])
+        maps.setdefault(side, []).append((rows, uvs[loops]))
+    return {side: [np.vstack(part) for part in zip(*rows)] for side, rows in maps.items()}
+
+
+def test_everything_on_a_mesh_comes_through(cube):
+    mesh = cube.data
+    before = volume(cube)
+    rest = read(mesh.vertices, "co", 3, np.float32)
+    old_weights = {name: weights(cube, name) for name in ["right", "top"]}
+    sides = {side: np.linalg.lstsq(*rows, rcond=None)[0] for side, rows in by_side(cube, rest).items()}
+    assert deform(BALL) == {"FINISHED"}
+    assert len(mesh.polygons) > 1000 and not mesh.validate(verbose=True)
+    positions = read(mesh.vertices, "co", 3, np.float32)
+    # Positions of 24 bits are off by 6e-8 at most, over an area of 24: 1.4e-6 of 8, were all off alike.
+    assert volume(cube) == pytest.approx(before, rel=2e-7)
+
+    # Colors were the position at rest, so they tell where every vertex came from.
+    colors = read(mesh.color_attributes["painted"].data, "color", 4, np.float32)
+    old, now_rest = len(rest), colors[:, :3] - 0.5
+    assert np.array_equal(colors[:old], rgba(rest))
+    moved = np.abs(positions - now_rest).max(axis=1)
+    assert moved.max() > 0.05
+    assert np.array_equal(positions[:old][rest[:, 2] < 0], rest[rest[:, 2] < 0])
+    loops = read(mesh.loops, "vertex_index", 1, np.int32)
+    assert read(mesh.color_attributes["corners"].data, "color", 4, np.float32) == pytest.approx(colors[loops], abs=1e-6)
+    second = mesh.uv_layers["second"]
+    assert read(second.data, "uv", 2, np.float32) == pytest.approx(now_rest[loops, :2] * [1, 0.5], abs=1e-6)
+    assert [layer.name for layer in mesh.uv_layers] == ["UVMap", "second"] and second.active_render
+
+    after = by_side(cube, now_rest)
+    assert set(after) == set(sides)
+    for side, (rows, uvs) in after.items():
+        assert uvs == pytest.approx(rows @ sides[side], abs=1e-5), "a corner left its island"
+
+    for name, was in old_weights.items():
+        now = weights(cube, name)
+        assert np.array_equal(now[:old], was, equal_nan=True)
+        assert np.nanmin(now) >= 0 and np.nanmax(now) <= 1 and np.isfinite(now[old:]).any()
+
+    assert [material.name for material in mesh.materials] == ["sides", "top"]
+    for polygon in mesh.polygons:
+        assert polygon.material_index == int((now_rest[list(polygon.vertices), 2] > 0.5 - 1e-6).all())
+    assert np.array_equal(read(mesh.attributes["sharp_edge"].data, "value", 1, bool), on_ridge(mesh, now_rest))
+
+
+def test_a_mirrored_object_is_deformed_alike(cube):
+    cube.scale = (-2, 2, 2)
+    cube.rotation_euler = (0, 0, 0.3)
+    bpy.context.view_layer.update()
+    before = volume(cube)
+    assert before < 0
+    rest = read(cube.data.vertices, "co", 3, np.float32)
+    assert deform(BALL) == {"FINISHED"}
+    assert volume(cube) == pytest.approx(before, rel=2e-7)
+    mesh = cube.data
+    colors = read(mesh.color_attributes["painted"].data, "color", 4, np.float32)
+    assert len(colors) > len(rest) and np.array_equal(colors[: len(rest)], rgba(rest))
+    loops = read(mesh.loops, "vertex_index", 1, np.int32)
+    assert read(mesh.color_attributes["corners"].data, "color", 4, np.float32) == pytest.approx(colors[loops], abs=1e-6)
+
+
+def test_polygons_stay_where_nothing_is_refined(cube):
+    rest = read(cube.data.vertices, "co", 3, np.float32)
+    assert deform(BALL.replace("max_edge = 0.25", "enabled = false")) == {"FINISHED"}
+    assert {len(polygon.vertices) for polygon in cube.data.polygons} == {4}
+    assert not np.array_equal(read(cube.data.vertices, "co", 3, np.float32), rest)
+
+
+def test_a_recipe_from_a_file(cube, tmp_path):
+    (tmp_path / "ball.toml").write_text(BALL)
+    assert bpy.ops.object.isochore_deform(filepath=str(tmp_path / "ball.toml")) == {"FINISHED"}
+    assert len(cube.data.polygons) > 1000
+
+
+@pytest.mark.parametrize(
+    ("recipe", "message"),
+    [
+        (BALL.replace("radius", "radios"), "radi"),
+        ("recipe = ", "Invalid value"),
+        (BALL.replace("keys", "kees"), "kees"),
+    ],
+)
+def test_what_is_wrong_is_reported(cube, recipe, message):
+    rest = read(cube.data.vertices, "co", 3, np.float32)
+    with pytest.raises(RuntimeError, match=message):
+        deform(recipe)
+    assert np.array_equal(read(cube.data.vertices, "co", 3, np.float32), rest)
+
+
+def test_shape_keys_are_refused(cube):
+    cube.shape_key_add(name="Basis")
+    with pytest.raises(RuntimeError, match="shape keys"):
+        deform(BALL)
+
+
+def test_undo(cube):
+    name, count = cube.name, len(cube.data.polygons)
+    bpy.ops.ed.undo_push(message="before")
+    deform(BALL)
+    bpy.ops.ed.undo_push(message="deform")
+    assert len(bpy.data.objects[name].data.polygons) > count
+    bpy.ops.ed.undo()
+    assert len(bpy.data.objects[name].data.polygons) == count
