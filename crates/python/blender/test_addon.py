@@ -167,6 +167,15 @@ def test_a_mirrored_object_is_deformed_alike(cube):
     assert read(mesh.color_attributes["corners"].data, "color", 4, np.float32) == pytest.approx(colors[loops], abs=1e-6)
 
 
+def test_a_loose_vertex_stays(cube):
+    cube.data.vertices.add(1)
+    cube.data.vertices[-1].co = (0, 0, -5)
+    cube.vertex_groups["right"].add([len(cube.data.vertices) - 1], 0.25, "REPLACE")
+    loose = len(cube.data.vertices) - 1
+    assert deform(BALL) == {"FINISHED"}
+    assert tuple(cube.data.vertices[loose].co) == (0, 0, -5) and weights(cube, "right")[loose] == 0.25
+
+
 def test_polygons_stay_where_nothing_is_refined(cube):
     rest = read(cube.data.vertices, "co", 3, np.float32)
     assert deform(BALL.replace("max_edge = 0.25", "enabled = false")) == {"FINISHED"}

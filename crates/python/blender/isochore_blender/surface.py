@@ -65,11 +65,14 @@ class Surface:
         shown_colors = colors.active_color_index, colors.render_color_index
 
         self._rebuild(positions, triangles)
-        # Any corner of a new vertex tells it; those of an old vertex agree.
-        corner = np.empty(len(positions), int)
+        # Any corner of a new vertex tells where it came from. Old vertices are still the first, loose ones among them.
+        corner = np.zeros(len(positions), int)
         corner[triangles.ravel()] = np.arange(triangles.size)
+        vertices, shares = self.triangles[source].repeat(3, axis=0)[corner], weights.reshape(-1, 3)[corner]
+        old = len(self.positions)
+        vertices[:old], shares[:old] = np.arange(old)[:, None], [1.0, 0.0, 0.0]
         at = {
-            "POINT": (self.triangles[source].repeat(3, axis=0)[corner], weights.reshape(-1, 3)[corner]),
+            "POINT": (vertices, shares),
             "CORNER": (self.loops[source].repeat(3, axis=0), weights.reshape(-1, 3)),
             "FACE": (self.polygons[source][:, None], np.ones((len(source), 1))),
             "EDGE": self._edges(triangles, source, weights, edges),
