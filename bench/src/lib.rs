@@ -16,7 +16,7 @@ use cpu_time::ProcessTime;
 pub use comparison::{Comparison, ROWS_VARIABLE};
 pub use memory::peak_bytes;
 pub use python_peer::{PythonPeer, scratch};
-pub use scan::{crossing_scans, scan};
+pub use scan::{crossing_scans, scan, scan_of_cube};
 pub use surface_peer::give_mesh;
 
 /// Rounds of every measurement, after one that warms up.

@@ -21,8 +21,19 @@ const IRREGULARITY: f64 = 0.2;
 
 /// A closed, rough, wavy ball of 20 · 4ⁿ triangles that do not cross; it encloses the origin.
 pub fn scan(subdivisions: u32) -> TriMesh {
-    let mut mesh = primitives::icosphere(1.0, subdivisions);
-    let spacing = 1.2 * libm::exp2(-f64::from(subdivisions));
+    roughened(primitives::icosphere(1.0, subdivisions), 1.2 * libm::exp2(-f64::from(subdivisions)))
+}
+
+/// The same of 12 `segments`² triangles, which are less alike in size.
+pub fn scan_of_cube(segments: usize) -> TriMesh {
+    let mut mesh = primitives::box_mesh(DVec3::ONE, [segments; 3]);
+    mesh.positions.iter_mut().for_each(|position| *position = position.normalize());
+    // The smallest edges, at the corners of the cube.
+    roughened(mesh, 0.8 / segments as f64)
+}
+
+/// Makes a scan of a unit sphere, the vertices of which are about `spacing` apart.
+fn roughened(mut mesh: TriMesh, spacing: f64) -> TriMesh {
     for (index, position) in mesh.positions.iter_mut().enumerate() {
         let noise = |ratio: f64| 2.0 * (index as f64 * ratio).fract() - 1.0;
         let shift = IRREGULARITY * spacing * dvec3(noise(0.618_034), noise(0.414_214), noise(0.732_051));
@@ -43,4 +54,13 @@ pub fn crossing_scans(subdivisions: u32) -> TriMesh {
         mesh.positions.iter().copied().chain(second).collect(),
         mesh.triangles.iter().copied().chain(triangles).collect(),
     )
+}
+
+#[test]
+fn scans_are_closed_and_do_not_cross() {
+    for mesh in [scan(5), scan_of_cube(29), scan_of_cube(51)] {
+        assert!(isochore_mesh::ClosedMesh::new(&mesh).is_ok());
+        let crossings = isochore_mesh::SelfIntersections::of(&mesh, &isochore_mesh::Silent).unwrap();
+        assert!(crossings.is_empty(), "{:?}", crossings.triangles());
+    }
 }

@@ -1,0 +1,88 @@
+//! How the cost of each stage grows: over the number of triangles, over the nodes of a distance grid and over the number of
+//! strokes, on one core. Prints the slopes on logarithmic scales and draws `target/growth/*.svg`.
+//!
+//! Ends each series before a run that would take longer than two seconds; `growth full` goes on to 10⁷ triangles and 20 seconds.
+
+#![expect(clippy::print_stdout, reason = "benchmarks print their results")]
+
+mod over_strokes;
+mod over_triangles;
+mod plot;
+mod series;
+
+use std::path::Path;
+
+use isochore_bench::{on_one_core, print_row};
+use isochore_mesh::{DistanceField, DistanceFieldOptions, Silent};
+
+use crate::{plot::Plot, series::Series};
+
+/// How far to go.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    /// Runs that would take longer are left out.
+    seconds: f64,
+    triangles: usize,
+}
+
+const SHORT: Extent = Extent { seconds: 2.0, triangles: 1_100_000 };
+
+const FULL: Extent = Extent { seconds: 20.0, triangles: 11_000_000 };
+
+/// Cells on the longest side of distance grids.
+const RESOLUTIONS: [usize; 4] = [32, 64, 128, 256];
+
+/// Of the scan that is sampled and that strokes deform: 98,000 triangles.
+const SEGMENTS: usize = 91;
+
+fn main() {
+    let extent = if std::env::args().any(|argument| argument == "full") { FULL } else { SHORT };
+    on_one_core(|| {
+        let [mesh, deformation] = over_triangles::measure(extent);
+        report("triangles", "triangles.svg", "Meshes: time of work over the number of triangles", &mesh);
+        report("triangles", "deformation.svg", "Deformation: time of work over the number of triangles", &deformation);
+        let grids = over_nodes(extent);
+        report("nodes of the grid", "grid.svg", "Distance grids: time of work over the number of nodes", &grids);
+        let strokes = over_strokes::measure(extent);
+        report("strokes", "strokes.svg", "Strokes: time of work over their number", &strokes);
+    });
+}
+
+/// Distance grids of one mesh.
+fn over_nodes(extent: Extent) -> Vec<Series> {
+    let mesh = isochore_bench::scan_of_cube(SEGMENTS);
+    let mut all = Series::new("distance grid");
+    let mut band = Series::new("distance grid, band of 4 cells");
+    for resolution in RESOLUTIONS {
+        let options = DistanceFieldOptions { resolution, ..DistanceFieldOptions::default() };
+        let narrow = DistanceFieldOptions { band: 4.0 * longest_side(&mesh) / resolution as f64, ..options };
+        let sample = |options| DistanceField::new(&mesh, &options, &Silent).expect("a sound mesh");
+        let nodes = sample(narrow).samples().len();
+        all.measure(nodes, extent.seconds, || sample(options));
+        band.measure(nodes, extent.seconds, || sample(narrow));
+    }
+    vec![all, band]
+}
+
+fn longest_side(mesh: &isochore_mesh::TriMesh) -> f64 {
+    mesh.bounds().size().max_element()
+}
+
+/// Prints the slopes and draws the plot.
+fn report(size: &str, file: &str, title: &str, series: &[Series]) {
+    println!("\n{title}");
+    print_row(["slope", "last slope", &format!("largest {size}"), "seconds there", "stage"]);
+    for series in series {
+        let Some(&(largest, seconds)) = series.points.last() else { continue };
+        print_row([
+            &format!("{:.2}", series.slope()),
+            &format!("{:.2}", series.last_slope()),
+            &largest.to_string(),
+            &format!("{seconds:.3}"),
+            series.stage,
+        ]);
+    }
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/growth");
+    std::fs::create_dir_all(&folder).expect("the target folder can be written");
+    Plot { title, size, series }.write(&folder.join(file)).expect("the target folder can be written");
+}

@@ -1,0 +1,46 @@
+use glam::{DVec3, dvec3};
+use isochore_bench::scan_of_cube;
+use isochore_field::{Stroke, deform, flow_points};
+use isochore_mesh::Silent;
+
+use crate::{
+    Extent, SEGMENTS,
+    over_triangles::{PLAIN, press, refinement},
+    series::Series,
+};
+
+/// Reach of each stroke: 64 of them cover the surface about twice over.
+const REACH: f64 = 0.35;
+
+/// Deformations of one mesh by growing numbers of strokes, spread over it evenly.
+pub(crate) fn measure(extent: Extent) -> Vec<Series> {
+    let mesh = scan_of_cube(SEGMENTS);
+    let mut plain = Series::new("deform, no refinement");
+    let mut refined = Series::new("deform, refinement");
+    let mut flow = Series::new("flow of points");
+    for count in [1, 2, 4, 8, 16, 32, 64] {
+        let strokes: Vec<Stroke> = (0..count)
+            .map(|index| {
+                let direction = spread(index, count);
+                let nearest = mesh.positions.iter().max_by(|a, b| {
+                    let along = |point: &DVec3| point.normalize().dot(direction);
+                    along(a).total_cmp(&along(b))
+                });
+                press(*nearest.expect("a vertex"), REACH)
+            })
+            .collect();
+        plain.measure(count, extent.seconds, || deform(&mesh, &strokes, &PLAIN, &Silent).expect("a sound mesh"));
+        refined
+            .measure(count, extent.seconds, || deform(&mesh, &strokes, &refinement(), &Silent).expect("a sound mesh"));
+        flow.measure(count, extent.seconds, || flow_points(&mesh.positions, &strokes, &Silent).expect("no stamp"));
+    }
+    vec![plain, refined, flow]
+}
+
+/// Directions about equally far from each other: steps of the golden angle on equal slices of the sphere.
+fn spread(index: usize, count: usize) -> DVec3 {
+    let height = 1.0 - (2.0 * index as f64 + 1.0) / count as f64;
+    let angle = std::f64::consts::PI * (3.0 - 5_f64.sqrt()) * index as f64;
+    let radius = (1.0 - height * height).sqrt();
+    dvec3(radius * libm::cos(angle), radius * libm::sin(angle), height)
+}
