@@ -6,7 +6,10 @@ use std::{
     process::Command,
 };
 
-use crate::shell::{TaskResult, cargo, run, target, workspace};
+use crate::{
+    debian,
+    shell::{TaskResult, cargo, run, target, workspace},
+};
 
 /// Warnings are errors to users of headers who want it so.
 const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
@@ -37,7 +40,7 @@ fn install_under(prefix: &Path) -> TaskResult {
 }
 
 /// Installs into the target folder, builds the example and the tests with what pkg-config says, as C and as C++, and runs them, the tests
-/// also under valgrind where it is installed.
+/// also under valgrind.
 pub(crate) fn test_programs() -> TaskResult {
     let prefix = target().join("capi");
     install_under(&prefix)?;
@@ -55,7 +58,8 @@ pub(crate) fn test_programs() -> TaskResult {
         run(compile.arg("-xnone").arg("-o").arg(&program).args(&flags))?;
         let mesh = prefix.join("written.obj");
         run(Command::new(&program).arg(&mesh).env("LD_LIBRARY_PATH", prefix.join("lib")))?;
-        if is_test && has("valgrind") {
+        if is_test {
+            debian::require("valgrind", "valgrind")?;
             let mut memory_check = Command::new("valgrind");
             memory_check.args([
                 "--quiet",
@@ -67,10 +71,6 @@ pub(crate) fn test_programs() -> TaskResult {
         }
     }
     Ok(())
-}
-
-fn has(program: &str) -> bool {
-    Command::new(program).arg("--version").output().is_ok()
 }
 
 /// What pkg-config tells compilers; where it is missing, what it would tell.

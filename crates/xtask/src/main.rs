@@ -7,6 +7,7 @@ mod arrows;
 mod bench;
 mod capi;
 mod data;
+mod debian;
 mod environment;
 mod full;
 mod gallery;

@@ -8,6 +8,7 @@ use std::{
 };
 
 use crate::{
+    debian,
     environment::interpreter,
     shell::{TaskResult, cargo, run, target, workspace},
 };
@@ -37,7 +38,7 @@ pub(crate) fn run_judges() -> TaskResult {
 fn environment() -> TaskResult<PathBuf> {
     let python = interpreter("oracle", &PACKAGES)?;
     if !can_load(&python, SYSTEM_LIBRARY) {
-        install_system_library()?;
+        debian::install(&["libgl1"])?;
     }
     Ok(python)
 }
@@ -45,16 +46,4 @@ fn environment() -> TaskResult<PathBuf> {
 fn can_load(python: &Path, library: &str) -> bool {
     let load = format!("import ctypes; ctypes.CDLL('{library}')");
     Command::new(python).args(["-c", &load]).output().is_ok_and(|output| output.status.success())
-}
-
-/// Installs the library where the system lets us, and says how where it does not.
-fn install_system_library() -> TaskResult {
-    let by_hand = "sudo apt-get install --yes libgl1";
-    let install = || {
-        run(Command::new("apt-get").args(["update", "--quiet"]))?;
-        run(Command::new("apt-get").args(["install", "--yes", "--quiet", "--no-install-recommends", "libgl1"]))
-    };
-    install().map_err(|error| {
-        format!("PyMeshLab needs {SYSTEM_LIBRARY}, which could not be installed ({error}); run: {by_hand}").into()
-    })
 }

@@ -8,7 +8,10 @@ use std::{
 
 use wasm_bindgen_cli_support::Bindgen;
 
-use crate::shell::{TaskResult, cargo, run, target, workspace};
+use crate::{
+    debian,
+    shell::{TaskResult, cargo, run, target, workspace},
+};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
@@ -33,7 +36,7 @@ pub(crate) fn test_in_browser() -> TaskResult {
         .generate(&package)?;
     eprintln!("the module has {} bytes", fs::metadata(package.join("isochore_bg.wasm"))?.len());
 
-    run(&mut cargo(&["run", "--release", "--locked", "--quiet", "--", "run", RECIPE, "--quiet", "--output"])
+    run(cargo(&["run", "--release", "--locked", "--quiet", "--", "run", RECIPE, "--quiet", "--output"])
         .arg(site.join("expected.obj"))
         .current_dir(workspace()))?;
     fs::copy(workspace().join(RECIPE), site.join("recipe.toml"))?;
@@ -77,11 +80,7 @@ fn install_from_debian() -> TaskResult {
     if ["lld-22", "cargo", "chromium"].iter().all(|name| Path::new("/usr/bin").join(name).exists()) {
         return Ok(());
     }
-    run(Command::new("apt-get").args(["update", "--quiet"]))?;
-    run(Command::new("apt-get")
-        .args(["install", "--yes", "--quiet", "--no-install-recommends"])
-        .args(DEBIAN_PACKAGES)
-        .env("DEBIAN_FRONTEND", "noninteractive"))
+    debian::install(&DEBIAN_PACKAGES)
 }
 
 /// Serves a folder to browsers of this machine.
