@@ -66,7 +66,3 @@ pub use scalar_block::ScalarBlock;
 pub use strip::{Strip, StripError, StripMotion, StripShape, StripSpine};
 pub use stroke::{Bend, FieldStroke, Move, Stamp, Stroke, StrokeError, Twist};
 pub use tool::{Tool, ToolError};
-
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;

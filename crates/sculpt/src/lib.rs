@@ -46,3 +46,7 @@ pub use replay::{Meshes, PointReplay, Replay, ReplayError, replay, replay_points
 pub use report::{Bounds, Measures, Report, Seconds, Source, StrokeReport};
 pub use scene::Scene;
 pub use stream_report::{StreamReport, StreamSeconds};
+
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
