@@ -70,7 +70,7 @@ proptest! {
         {
             let corners = |triangle: u32| Some(rest.corners(triangle as usize));
             // Half of them beside another, the rest by a search.
-            let near = |triangle: u32| if triangle % 2 == 0 { [NONE, triangle.wrapping_sub(1), triangle] } else { [NONE; 3] };
+            let near = |triangle: u32| if triangle.is_multiple_of(2) { [NONE, triangle.wrapping_sub(1), triangle] } else { [NONE; 3] };
             tree.resize(rest.triangles.len(), &corners, &near);
             tree.update(&[], &corners);
         }
