@@ -13,7 +13,8 @@ pub(crate) fn run_all() -> TaskResult {
     run(&mut cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--quiet", "--", "--deny", "warnings"]))?;
     // One of the tests counts instructions with it.
     debian::require("valgrind", "valgrind")?;
-    run(&mut cargo(&["test", "--workspace", "--locked", "--quiet"]))?;
+    // The only features that are on by default are peers of the benchmarks.
+    run(&mut cargo(&["test", "--workspace", "--no-default-features", "--locked", "--quiet"]))?;
     oracle::run_judges()?;
     size::check()?;
     capi::test_programs()?;
