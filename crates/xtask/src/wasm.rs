@@ -18,8 +18,9 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// Debian's compiler for the target, where rustup has none to give, and what else is needed here.
 const DEBIAN_PACKAGES: [&str; 6] = ["rustc-web", "cargo-web", "rust-web-src", "rust-web-llvm", "lld-22", "chromium"];
 
-/// The recipe that has to give the same bytes in the browser as natively.
+/// The recipe that has to give the same bytes in the browser as natively, and the mesh that it names.
 const RECIPE: &str = "data/recipes/sphere.toml";
+const MESH: &str = "data/planet.obj";
 
 /// Builds the package for browsers in `target/wasm/pkg` and runs the pages of its tests and examples.
 pub(crate) fn test_in_browser() -> TaskResult {
@@ -40,6 +41,7 @@ pub(crate) fn test_in_browser() -> TaskResult {
         .arg(site.join("expected.obj"))
         .current_dir(workspace()))?;
     fs::copy(workspace().join(RECIPE), site.join("recipe.toml"))?;
+    fs::copy(workspace().join(MESH), site.join("planet.obj"))?;
     let server = Server::start(&site)?;
     for page in ["tests/browser.html", "examples/sculpt.html"] {
         let source = workspace().join("crates/wasm").join(page);
