@@ -18,6 +18,7 @@ mod compensated_sum;
 mod distance;
 mod distance_field;
 mod edit_mesh;
+mod extremes;
 mod grid_mesh;
 pub mod io;
 mod journaled;

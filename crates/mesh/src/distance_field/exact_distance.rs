@@ -1,6 +1,7 @@
 use glam::DVec3;
 
 use super::packet::{LANES, NOTHING};
+use crate::extremes::lesser;
 
 type Lanes = [f64; LANES];
 
@@ -85,9 +86,4 @@ fn dot(a: Vector, b: Vector) -> f64 {
 #[inline(always)]
 fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-#[inline(always)]
-fn lesser(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
 }

@@ -1,6 +1,7 @@
 use glam::{DVec2, DVec3};
 
-use super::packet::{LANES, Packet, greater, lesser};
+use super::packet::{LANES, Packet};
+use crate::extremes::{greater, lesser};
 
 /// A triangle in its own plane: corners at (0, 0), (`base`, 0) and `left_length` · `left`.
 #[derive(Debug, Clone, Copy)]

@@ -12,6 +12,7 @@ use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::Grid;
+use crate::extremes::greater;
 
 /// Times that a cell is halved along all axes. More: slower, for a bound less than a percent lower.
 const HALVINGS: usize = 1;
@@ -137,12 +138,6 @@ fn raise_by_difference(greatest: &mut [f32], one: &[f32], other: &[f32]) {
     for ((greatest, one), other) in greatest.iter_mut().zip(one).zip(other) {
         *greatest = greater(*greatest, (other - one).abs());
     }
-}
-
-// `f32::max` also says what becomes of NaN, which costs instructions; there is none here.
-#[inline(always)]
-fn greater(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// The greater of `known` and the squared bound in a cell with these control values.

@@ -8,9 +8,10 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::packet::{LANES, Lanes, Packet, greater};
+use super::packet::{LANES, Lanes, Packet};
 use crate::Bvh;
 use crate::bvh::{LEAF_TRIANGLES, Node};
+use crate::extremes::greater;
 
 /// A box in any orientation, ready for distances to a packet of points.
 #[derive(Debug, Clone, Copy)]

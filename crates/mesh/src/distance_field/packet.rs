@@ -123,18 +123,6 @@ impl PacketSearch {
     }
 }
 
-// `f32::min` and `max` also say what becomes of NaN, which costs three instructions more; there is none here.
-
-#[inline(always)]
-pub(super) fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-pub(super) fn greater(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
 #[cfg(test)]
 mod tests {
     use multiversion::multiversion;

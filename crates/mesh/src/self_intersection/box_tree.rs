@@ -8,8 +8,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rdst::{RadixKey, RadixSort};
 
-use super::separation::{greater, lesser};
 use crate::bvh::UnitFrame;
+use crate::extremes::{greater, lesser};
 
 /// Boxes that share a box of the next level.
 pub(super) const WIDTH: usize = 8;

@@ -5,6 +5,8 @@
 
 use glam::DVec3;
 
+use crate::extremes::{greater, lesser};
+
 /// Pairs that are looked at together.
 pub(super) const LANES: usize = 16;
 
@@ -204,18 +206,6 @@ fn margin(direction: &Vectors, sizes: &Lanes) -> Lanes {
         margin[i] = ROUNDING * norm * sizes[i] + UNDERFLOW;
     }
     margin
-}
-
-/// The lesser number, in one instruction: nothing here is not a number.
-#[inline(always)]
-pub(super) fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// The greater number.
-#[inline(always)]
-pub(super) fn greater(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// The largest component in size of any of the vectors.
