@@ -171,7 +171,7 @@ impl Session {
         }
         // What the log will say, so that replaying it gives the same bits.
         let key = log::key(pose);
-        let pose = scene::pose(&key);
+        let pose = key.pose();
         self.move_to_key(key, pose, time)
     }
 
