@@ -45,7 +45,7 @@ pub unsafe extern "C" fn isochore_run(
         if mesh.is_null() {
             return Err(Failure::argument("mesh is NULL"));
         }
-        let recipe = Recipe::parse(words, format_of(words), &[])?;
+        let recipe = Recipe::parse(words, Format::of_text(words), &[])?;
         // SAFETY: as the caller promises.
         let meshes = unsafe { named(given) }?;
         let watcher = Watcher::new(progress, context);
@@ -73,9 +73,4 @@ pub(crate) unsafe fn named(given: &[NamedMesh]) -> Result<Meshes, Failure> {
         Ok((name.to_owned(), mesh.mesh.clone()))
     };
     given.iter().map(one).collect()
-}
-
-/// TOML or JSON.
-pub(crate) fn format_of(text: &str) -> Format {
-    if text.trim_start().starts_with('{') { Format::Json } else { Format::Toml }
 }

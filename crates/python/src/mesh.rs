@@ -174,8 +174,7 @@ fn geometry(positions: &Bound<'_, PyAny>, indices: &Bound<'_, PyAny>) -> Result<
 }
 
 fn parse_format(name: &str) -> Result<Format, Failure> {
-    let path = PathBuf::from(format!("mesh.{}", name.trim_start_matches('.')));
-    Format::of_path(&path).ok_or_else(|| {
+    Format::of_extension(name.trim_start_matches('.')).ok_or_else(|| {
         Failure::Argument(format!("`{name}` is no format of meshes: take one of obj, gltf, glb, ply, stl, off"))
     })
 }

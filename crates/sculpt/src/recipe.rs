@@ -255,6 +255,13 @@ pub enum Format {
     Json,
 }
 
+impl Format {
+    /// JSON where `text` begins with a brace, TOML otherwise.
+    pub fn of_text(text: &str) -> Self {
+        if text.trim_start().starts_with('{') { Self::Json } else { Self::Toml }
+    }
+}
+
 impl Recipe {
     /// Reads a recipe, lets `overrides` win over what it says, and [validates](Self::validate) it.
     ///

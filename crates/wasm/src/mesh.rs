@@ -1,7 +1,5 @@
 //! Triangle meshes.
 
-use std::path::PathBuf;
-
 use bytemuck::cast_slice;
 use glam::DVec3;
 use isochore_mesh::{
@@ -73,6 +71,5 @@ impl Mesh {
 }
 
 fn parse_format(name: &str) -> Result<Format, JsError> {
-    let path = PathBuf::from(format!("mesh.{name}"));
-    Format::of_path(&path).ok_or_else(|| thrown(format!("`{name}` is no format of meshes")))
+    Format::of_extension(name).ok_or_else(|| thrown(format!("`{name}` is no format of meshes")))
 }

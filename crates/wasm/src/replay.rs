@@ -28,8 +28,7 @@ impl Recipe {
     /// Reads a recipe: JSON where it begins with a brace, TOML otherwise.
     #[wasm_bindgen(constructor)]
     pub fn new(text: String) -> Result<Recipe, JsError> {
-        let format = if text.trim_start().starts_with('{') { Format::Json } else { Format::Toml };
-        let recipe = RecipeData::parse(&text, format, &[]).map_err(thrown)?;
+        let recipe = RecipeData::parse(&text, Format::of_text(&text), &[]).map_err(thrown)?;
         Ok(Self { text, recipe, meshes: Meshes::new() })
     }
 

@@ -24,7 +24,12 @@ pub enum Format {
 impl Format {
     /// The format that the extension of `path` stands for, in any case.
     pub fn of_path(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+        Self::of_extension(path.extension()?.to_str()?)
+    }
+
+    /// The format that an extension without its dot stands for, in any case.
+    pub fn of_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
             "obj" => Some(Self::Obj),
             "gltf" => Some(Self::Gltf),
             "glb" => Some(Self::Glb),
