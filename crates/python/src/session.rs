@@ -5,13 +5,14 @@ use std::sync::{
     atomic::{AtomicUsize, Ordering},
 };
 
+use bytemuck::Pod;
 use glam::DVec3;
 use isochore_field::Pose;
 use isochore_sculpt::{
     recipe::Key,
-    session::{self, DirtyRange, InteractiveRefinement, NormalWeights, SessionOptions, StrokeOptions},
+    session::{self, DirtyRange, InteractiveRefinement, NormalWeights, RenderBuffers, SessionOptions, StrokeOptions},
 };
-use numpy::IntoPyArray;
+use numpy::{Element, IntoPyArray};
 use pyo3::{
     exceptions::PyBufferError,
     prelude::*,
@@ -168,46 +169,28 @@ impl Session {
 
     #[getter]
     fn positions<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        Self::hold(slf, |session, hold| {
-            let positions = session.buffers().positions;
-            view(hold, positions.as_flattened(), &[positions.len(), 3])
-        })
+        Self::rows(slf, |buffers| buffers.positions)
     }
 
     #[getter]
     fn normals<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        Self::hold(slf, |session, hold| {
-            let normals = session.buffers().normals;
-            view(hold, normals.as_flattened(), &[normals.len(), 3])
-        })
+        Self::rows(slf, |buffers| buffers.normals)
     }
 
     #[getter]
     fn uvs<'py>(slf: &Bound<'py, Self>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let count = slf.get().lock().buffers().uvs.len();
-        let set = |set: usize| {
-            Self::hold(slf, |session, hold| {
-                let uvs = &session.buffers().uvs[set];
-                view(hold, uvs.as_flattened(), &[uvs.len(), 2])
-            })
-        };
-        (0..count).map(set).collect()
+        let sets = slf.get().lock().buffers().uvs.len();
+        (0..sets).map(|set| Self::rows(slf, |buffers| buffers.uvs[set].as_slice())).collect()
     }
 
     #[getter]
     fn colors<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        Self::hold(slf, |session, hold| {
-            let colors = session.buffers().colors;
-            view(hold, colors.as_flattened(), &[colors.len(), 4])
-        })
+        Self::rows(slf, |buffers| buffers.colors)
     }
 
     #[getter]
     fn triangles<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        Self::hold(slf, |session, hold| {
-            let indices = session.buffers().indices;
-            view(hold, indices.as_flattened(), &[indices.len(), 3])
-        })
+        Self::rows(slf, |buffers| buffers.indices)
     }
 
     /// Ranges of the buffers that have changed since the last call.
@@ -331,16 +314,17 @@ impl Session {
         })
     }
 
-    /// Makes a view of a buffer, which keeps the session from changing while it lives.
-    fn hold<'py>(
+    /// A view of the rows of a buffer, which keeps the session from changing while it lives.
+    fn rows<'py, T: Element + Pod, const N: usize>(
         slf: &Bound<'py, Self>,
-        make: impl FnOnce(&session::Session, Bound<'py, PyAny>) -> Bound<'py, PyAny>,
+        buffer: impl for<'a> FnOnce(RenderBuffers<'a>) -> &'a [[T; N]],
     ) -> PyResult<Bound<'py, PyAny>> {
         let this = slf.get();
         let session = this.lock();
         this.views.fetch_add(1, Ordering::AcqRel);
         let hold = Hold { _session: slf.clone().unbind(), views: Arc::clone(&this.views) };
-        Ok(make(&session, Bound::new(slf.py(), hold)?.into_any()))
+        let rows = buffer(session.buffers());
+        Ok(view(Bound::new(slf.py(), hold)?.into_any(), rows.as_flattened(), &[rows.len(), N]))
     }
 }
 
