@@ -64,7 +64,7 @@ pub fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
     let recipe = Recipe::parse(&fs::read_to_string(recipes.join(name).with_extension("toml"))?, Format::Toml, &[])?;
     let mut meshes = Meshes::new();
     for name in recipe.mesh_names() {
-        meshes.insert(name.to_owned(), io::read(recipes.join(name))?);
+        meshes.insert(name.to_owned(), io::read(recipes.join(name))?.into());
     }
     Ok(Scene::build(&recipe, &meshes, &Silent)?)
 }

@@ -32,7 +32,8 @@ pub(crate) fn demo(arguments: &DemoArguments, console: &Console) -> Result<Outco
         let path = folder.join(name);
         let wrong = |error: &dyn std::fmt::Display| CommandError::file(&path, error);
         let format = Format::of_path(&path).ok_or_else(|| wrong(&"unknown mesh format"))?;
-        meshes.insert(name.to_owned(), io::read_bytes(format, bytes).map_err(|error| wrong(&error))?);
+        let mesh = io::read_bytes(format, bytes).map_err(|error| wrong(&error))?;
+        meshes.insert(name.to_owned(), mesh.into());
         let draft = staging.add_file(&path)?;
         staging.write(&draft, bytes)?;
     }

@@ -72,7 +72,7 @@ impl Job {
         self.read_curves()?;
         let names = self.recipe.mesh_names().into_iter();
         let meshes: Meshes = names
-            .map(|name| Ok((name.to_owned(), io::read(self.beside(name))?)))
+            .map(|name| Ok((name.to_owned(), io::read(self.beside(name))?.into())))
             .collect::<Result<_, CommandError>>()?;
         if let Some(VertexWeights::File(name)) = &self.recipe.mask.vertices {
             let target = self.recipe.target.mesh.as_ref().and_then(|name| meshes.get(name));
@@ -87,7 +87,7 @@ impl Job {
         self.read_curves()?;
         let target = self.recipe.target.mesh.take();
         let meshes =
-            self.recipe.mesh_names().into_iter().map(|name| Ok((name.to_owned(), io::read(self.beside(name))?)));
+            self.recipe.mesh_names().into_iter().map(|name| Ok((name.to_owned(), io::read(self.beside(name))?.into())));
         let meshes = meshes.collect();
         self.recipe.target.mesh = target;
         meshes

@@ -58,6 +58,7 @@ pub use shapes::{Capsule, Ellipsoid, HalfSpace, RoundedBox, ShapeError, Sphere, 
 pub use surface_tree::{SurfaceHit, SurfaceTree};
 pub use topology::Topology;
 pub use tri_mesh::{
-    CornerAttributes, Origin, Resampling, SplitError, SubTriangle, Subdivision, TriMesh, VertexAttributes, VertexOrigin,
+    CornerAttributes, Origin, Resampling, SkinError, SkinTable, SplitError, SubTriangle, Subdivision, TriMesh,
+    VertexAttributes, VertexOrigin,
 };
 pub use winding_number::WindingNumber;

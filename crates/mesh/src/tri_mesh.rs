@@ -3,6 +3,7 @@
 mod attributes;
 mod normals;
 mod resampled;
+mod skin_table;
 mod split;
 mod subdivided;
 mod transformed;
@@ -12,6 +13,7 @@ use glam::DVec3;
 
 pub use attributes::{CornerAttributes, VertexAttributes};
 pub use resampled::{Origin, Resampling, VertexOrigin};
+pub use skin_table::{SkinError, SkinTable};
 pub use split::SplitError;
 pub use subdivided::{SubTriangle, Subdivision};
 

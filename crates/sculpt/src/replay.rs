@@ -1,6 +1,6 @@
 //! Carrying out a recipe on loaded meshes or on bare points.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use glam::DVec3;
 use isochore_field as field;
@@ -12,8 +12,8 @@ use crate::{
     scene::Scene,
 };
 
-/// Loaded meshes by the name that the recipe gives them.
-pub type Meshes = BTreeMap<String, TriMesh>;
+/// Loaded meshes by the name that the recipe gives them, shared with whoever has loaded them.
+pub type Meshes = BTreeMap<String, Arc<TriMesh>>;
 
 /// What became of the target.
 #[derive(Debug, Clone)]

@@ -32,7 +32,7 @@ use crate::{
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// The target where it stands in the world.
-    pub target: TriMesh,
+    pub target: Arc<TriMesh>,
     /// The strokes, in order.
     pub strokes: Vec<field::Stroke>,
     /// How they are to be applied.
@@ -98,12 +98,12 @@ impl Scene {
         recipe.validate()?;
         let target = target(&recipe.target, meshes);
         // With the bounds of the mesh, points take the very steps of its vertices.
-        let bounds = target.as_ref().map_or(bounds, TriMesh::bounds);
+        let bounds = target.as_ref().map_or(bounds, |target| target.bounds());
         let mut workshop = Workshop { recipe, meshes, monitor, bounds, warnings: Vec::new() };
         let mut strokes = workshop.strokes()?;
         if recipe.mask != Mask::default() {
-            let target = if recipe.mask.vertices.is_some() { Some(&target?) } else { None };
-            strokes = mask::masked(strokes, recipe, target, bounds)?;
+            let target = if recipe.mask.vertices.is_some() { Some(target?) } else { None };
+            strokes = mask::masked(strokes, recipe, target.as_deref(), bounds)?;
         }
         Ok((strokes, workshop.warnings))
     }
@@ -281,18 +281,14 @@ pub(crate) fn analytic_distance(shape: &ToolShape) -> Result<Arc<dyn Distance>, 
     distance.map_err(|error| RecipeProblem::Other(error.to_string()))
 }
 
-fn target(target: &Target, meshes: &Meshes) -> Result<TriMesh, ReplayError> {
-    let made;
+fn target(target: &Target, meshes: &Meshes) -> Result<Arc<TriMesh>, ReplayError> {
     let mesh = match (&target.mesh, &target.shape) {
-        (Some(name), _) => find(meshes, name)?,
-        (None, Some(shape)) => {
-            made = target_mesh(shape);
-            &made
-        }
+        (Some(name), _) => Arc::clone(find(meshes, name)?),
+        (None, Some(shape)) => Arc::new(target_mesh(shape)),
         (None, None) => return Err(RecipeError::new("target", RecipeProblem::NeitherMeshNorShape).into()),
     };
     // The identity would round too: the bits of a mesh that is not placed must be those of its file.
-    if target.transform == Transform::default() { Ok(mesh.clone()) } else { Ok(transformed(mesh, &target.transform)) }
+    Ok(if target.transform == Transform::default() { mesh } else { Arc::new(transformed(&mesh, &target.transform)) })
 }
 
 fn target_mesh(shape: &TargetShape) -> TriMesh {
@@ -308,7 +304,7 @@ fn target_mesh(shape: &TargetShape) -> TriMesh {
     }
 }
 
-fn find<'a>(meshes: &'a Meshes, name: &str) -> Result<&'a TriMesh, ReplayError> {
+fn find<'a>(meshes: &'a Meshes, name: &str) -> Result<&'a Arc<TriMesh>, ReplayError> {
     meshes.get(name).ok_or_else(|| ReplayError::MissingMesh { name: name.to_owned() })
 }
 

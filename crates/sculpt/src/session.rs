@@ -113,7 +113,8 @@ impl Session {
     ///
     /// # Errors
     /// [`OpenError`], naming the edge, vertex or option that is wrong.
-    pub fn open(mesh: TriMesh, options: SessionOptions) -> Result<Self, OpenError> {
+    pub fn open(mesh: impl Into<Arc<TriMesh>>, options: SessionOptions) -> Result<Self, OpenError> {
+        let mesh = mesh.into();
         mesh.check_valid()?;
         check(&options)?;
         let mask = match options.mask == Mask::default() {

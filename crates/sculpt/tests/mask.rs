@@ -39,7 +39,7 @@ fn recipe(settings: &[&str]) -> Recipe {
 }
 
 fn meshes() -> Meshes {
-    Meshes::from([("target".to_owned(), primitives::icosphere(1.0, 3))])
+    Meshes::from([("target".to_owned(), primitives::icosphere(1.0, 3).into())])
 }
 
 /// What is wrong with the recipe, once read or once replayed.

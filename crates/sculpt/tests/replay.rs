@@ -36,7 +36,7 @@ fn recipe(settings: &[&str]) -> Recipe {
 }
 
 fn meshes(target: TriMesh) -> Meshes {
-    Meshes::from([("target".to_owned(), target)])
+    Meshes::from([("target".to_owned(), target.into())])
 }
 
 #[test]

@@ -12,7 +12,7 @@ use super::{
 
 impl Surface {
     /// The surface of `mesh`, as opened.
-    pub(super) fn open(mesh: TriMesh, weights: NormalWeights) -> Result<Self, OpenError> {
+    pub(super) fn open(mesh: Arc<TriMesh>, weights: NormalWeights) -> Result<Self, OpenError> {
         mesh.check_valid()?;
         check_attributes(&mesh)?;
         let topology = EditMesh::new(&mesh.triangles, mesh.positions.len())?;
@@ -21,7 +21,7 @@ impl Surface {
         let patches = (0..mesh.triangles.len() as u32)
             .map(|parent| Patch { parent, hard: hard_edges(&mesh, &topology, parent) })
             .collect();
-        Ok(Self::new(Arc::new(mesh), topology, corners, patches, render, tree, weights))
+        Ok(Self::new(mesh, topology, corners, patches, render, tree, weights))
     }
 }
 

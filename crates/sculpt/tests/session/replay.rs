@@ -10,7 +10,7 @@ use isochore_sculpt::{
 use super::*;
 
 fn meshes(mesh: TriMesh) -> Meshes {
-    Meshes::from([("target".to_owned(), mesh)])
+    Meshes::from([("target".to_owned(), mesh.into())])
 }
 
 #[test]
