@@ -44,10 +44,10 @@ int main(int count, char **arguments) {
                        NULL, &clay, NULL));
     check(isochore_tool_new("brush", "{\"shape\": {\"kind\": \"sphere\", \"radius\": 0.2}, \"support\": 0.3}", NULL, 0, NULL, NULL,
                             &brush));
-    check(isochore_session_new(clay, 0, 0, &session));
+    check(isochore_session_new(clay, NULL, &session));
     printf("%zu rows to begin with\n", upload(session, &copy));
 
-    check(isochore_session_begin_stroke(session, brush, true, 0));
+    check(isochore_session_begin_stroke(session, brush, NULL));
     for (int step = 0; step < 6; step++) {
         const double at[3] = {0.1 * step, 0, 1.2 - 0.04 * step};
         check(isochore_session_move_to(session, at, NULL, step / 60.0));

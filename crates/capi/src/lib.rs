@@ -13,17 +13,19 @@ mod tool;
 pub use error::{Status, isochore_last_error};
 pub use memory::isochore_text_free;
 pub use mesh::{
-    Mesh, isochore_mesh_free, isochore_mesh_new, isochore_mesh_positions, isochore_mesh_read,
-    isochore_mesh_triangle_count, isochore_mesh_triangles, isochore_mesh_vertex_count, isochore_mesh_volume,
-    isochore_mesh_write,
+    Mesh, isochore_mesh_free, isochore_mesh_new, isochore_mesh_positions, isochore_mesh_read, isochore_mesh_set_skin,
+    isochore_mesh_skin, isochore_mesh_skin_influences, isochore_mesh_triangle_count, isochore_mesh_triangles,
+    isochore_mesh_vertex_count, isochore_mesh_volume, isochore_mesh_write,
 };
 pub use monitor::Progress;
 pub use replay::{NamedMesh, isochore_run};
 pub use session::{
-    Buffer, Buffers, Hit, Range, Session, StrokeReceipt, isochore_session_begin_stroke, isochore_session_buffers,
-    isochore_session_cancel_stroke, isochore_session_changed, isochore_session_closest_point,
-    isochore_session_end_stroke, isochore_session_export, isochore_session_free, isochore_session_log,
-    isochore_session_move_to, isochore_session_new, isochore_session_pick, isochore_session_redo,
-    isochore_session_take_changes, isochore_session_undo, isochore_session_volume,
+    Arrow, Buffer, Buffers, Hit, Origin, Range, Session, SessionOptions, StrokeOptions, StrokeReceipt,
+    isochore_session_begin_stroke, isochore_session_buffers, isochore_session_cancel_stroke, isochore_session_changed,
+    isochore_session_closest_point, isochore_session_end_stroke, isochore_session_export, isochore_session_free,
+    isochore_session_freeze_edges, isochore_session_log, isochore_session_move_to, isochore_session_moved_volume,
+    isochore_session_new, isochore_session_origin, isochore_session_pick, isochore_session_preview,
+    isochore_session_redo, isochore_session_take_changes, isochore_session_undo, isochore_session_vertices_in_reach,
+    isochore_session_volume,
 };
 pub use tool::{Tool, isochore_tool_free, isochore_tool_new};

@@ -79,6 +79,19 @@ pub(crate) unsafe fn put<T>(name: &str, place: *mut T, value: T) -> Result<(), F
     Ok(())
 }
 
+/// Copies values where the caller wants them.
+///
+/// # Safety
+/// `place` is NULL or can be written to as many times as there are values.
+pub(crate) unsafe fn fill<T: Copy>(name: &str, place: *mut T, values: &[T]) -> Result<(), Failure> {
+    if place.is_null() || !place.is_aligned() {
+        return Err(Failure::argument(format!("{name} is no array")));
+    }
+    // SAFETY: as the caller promises; what is read is memory of ours, which the caller cannot write to.
+    unsafe { place.copy_from_nonoverlapping(values.as_ptr(), values.len()) };
+    Ok(())
+}
+
 /// Hands a text to the caller, who gives it back to [`isochore_text_free`].
 ///
 /// # Safety

@@ -1,20 +1,20 @@
 //! Triangle meshes.
 
-use std::ffi::c_char;
+use std::{ffi::c_char, sync::Arc};
 
 use bytemuck::cast_slice;
 use glam::DVec3;
 use isochore_mesh::{ClosedMesh, TriMesh, io};
 
 use crate::{
-    error::{Status, guarded},
-    memory::{array, free, hand_over, put, reference, text},
+    error::{Failure, Status, guarded},
+    memory::{array, fill, free, hand_over, put, reference, reference_mut, text},
 };
 
-/// A triangle mesh, which does not change.
+/// A triangle mesh.
 #[derive(Debug)]
 pub struct Mesh {
-    pub(crate) mesh: TriMesh,
+    pub(crate) mesh: Arc<TriMesh>,
 }
 
 /// Copies a mesh out of arrays: x, y, z of each vertex, and three vertex indices of each triangle, counter-clockwise seen from
@@ -42,7 +42,7 @@ pub unsafe extern "C" fn isochore_mesh_new(
         let made = TriMesh::new(positions.to_vec(), triangles.to_vec());
         made.check_valid()?;
         // SAFETY: as the caller promises.
-        unsafe { hand_over("mesh", mesh, Mesh { mesh: made }) }
+        unsafe { hand_over("mesh", mesh, Mesh { mesh: made.into() }) }
     })
 }
 
@@ -57,7 +57,7 @@ pub unsafe extern "C" fn isochore_mesh_read(path: *const c_char, mesh: *mut *mut
         let path = unsafe { text("path", path) }?;
         let read = io::read(path)?;
         // SAFETY: as the caller promises.
-        unsafe { hand_over("mesh", mesh, Mesh { mesh: read }) }
+        unsafe { hand_over("mesh", mesh, Mesh { mesh: read.into() }) }
     })
 }
 
@@ -126,6 +126,59 @@ pub unsafe extern "C" fn isochore_mesh_volume(mesh: *const Mesh, volume: *mut f6
         let enclosed = ClosedMesh::new(&mesh.mesh)?.volume();
         // SAFETY: as the caller promises.
         unsafe { put("volume", volume, enclosed) }
+    })
+}
+
+/// Takes skin weights: `per_vertex` joints of each vertex and as many weights, which are divided by the sum of each vertex'. Weight
+/// zero is for places that are not used.
+///
+/// # Safety
+/// `mesh` is a handle; the arrays have `per_vertex` values for each vertex.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn isochore_mesh_set_skin(
+    mesh: *mut Mesh,
+    per_vertex: usize,
+    joints: *const u32,
+    weights: *const f64,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let mesh = unsafe { reference_mut("mesh", mesh) }?;
+        let vertices = mesh.mesh.positions.len();
+        let count = vertices.checked_mul(per_vertex);
+        let count = count.ok_or_else(|| Failure::argument(format!("{per_vertex} influences are too many")))?;
+        // SAFETY: as the caller promises.
+        let (joints, weights) = unsafe { (array("joints", joints, count)?, array("weights", weights, count)?) };
+        let attributes = &mut Arc::make_mut(&mut mesh.mesh).vertex;
+        attributes.set_skin_table(vertices, per_vertex, joints, weights).map_err(Failure::argument)
+    })
+}
+
+/// The most joints that move any vertex; 0 where there is no skin, and of NULL.
+///
+/// # Safety
+/// `mesh` is NULL or a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn isochore_mesh_skin_influences(mesh: *const Mesh) -> usize {
+    // SAFETY: as the caller promises.
+    unsafe { mesh.as_ref() }.map_or(0, |mesh| mesh.mesh.vertex.skin.iter().map(Vec::len).max().unwrap_or(0))
+}
+
+/// Copies the skin: for each vertex as many joints, and weights that sum to one, as `isochore_mesh_skin_influences` says; weight zero
+/// where there are fewer.
+///
+/// # Safety
+/// `mesh` is a handle; so many values can be written to each array.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn isochore_mesh_skin(mesh: *const Mesh, joints: *mut u32, weights: *mut f64) -> Status {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let table = unsafe { reference("mesh", mesh) }?.mesh.vertex.skin_table();
+        // SAFETY: as the caller promises.
+        unsafe {
+            fill("joints", joints, &table.joints)?;
+            fill("weights", weights, &table.weights)
+        }
     })
 }
 

@@ -1,6 +1,9 @@
 //! Recipes carried out.
 
-use std::ffi::{c_char, c_void};
+use std::{
+    ffi::{c_char, c_void},
+    sync::Arc,
+};
 
 use isochore_sculpt::{Meshes, Recipe, Report, Source, recipe::Format, replay};
 
@@ -58,11 +61,11 @@ pub unsafe extern "C" fn isochore_run(
             unsafe { hand_over_text("report", report, &account) }?;
         }
         // SAFETY: as the caller promises.
-        unsafe { hand_over("mesh", mesh, Mesh { mesh: replay.deformed.mesh }) }
+        unsafe { hand_over("mesh", mesh, Mesh { mesh: replay.deformed.mesh.into() }) }
     })
 }
 
-/// Clones the meshes that a caller names.
+/// The meshes that a caller names.
 ///
 /// # Safety
 /// Names are texts, meshes handles.
@@ -70,7 +73,7 @@ pub(crate) unsafe fn named(given: &[NamedMesh]) -> Result<Meshes, Failure> {
     let one = |named: &NamedMesh| {
         // SAFETY: as the caller promises.
         let (name, mesh) = unsafe { (text("meshes.name", named.name)?, reference("meshes.mesh", named.mesh)?) };
-        Ok((name.to_owned(), mesh.mesh.clone()))
+        Ok((name.to_owned(), Arc::clone(&mesh.mesh)))
     };
     given.iter().map(one).collect()
 }

@@ -1,16 +1,23 @@
 //! Sculpting sessions.
 
-use std::ffi::c_char;
+mod query;
+
+use std::{ffi::c_char, sync::Arc};
 
 use glam::DVec3;
 use isochore_sculpt::{
-    recipe::Key,
-    session::{self, DirtyRange, Hit as SurfaceHit, InteractiveRefinement, SessionOptions, StrokeOptions},
+    recipe::{Key, Mask, VertexWeights},
+    session::{self, DirtyRange, InteractiveRefinement},
+};
+
+pub use query::{
+    Arrow, Hit, Origin, isochore_session_closest_point, isochore_session_moved_volume, isochore_session_origin,
+    isochore_session_pick, isochore_session_preview, isochore_session_vertices_in_reach, isochore_session_volume,
 };
 
 use crate::{
     error::{Failure, Status, guarded},
-    memory::{array, free, hand_over, hand_over_text, put, reference, reference_mut},
+    memory::{array, free, hand_over, hand_over_text, put, reference, reference_mut, text},
     mesh::Mesh,
     tool::Tool,
 };
@@ -21,6 +28,42 @@ pub struct Session {
     session: session::Session,
     /// By buffer what has changed since it was last asked for.
     changed: [Vec<Range>; 4],
+    /// The vertices in reach that were last asked for.
+    reached: Vec<u32>,
+    /// The preview that was last asked for.
+    arrows: Vec<Arrow>,
+}
+
+/// How a session works. Zeros and NULL stand for the usual.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct SessionOptions {
+    /// Travel of the tool in one time step, as in a recipe.
+    pub step: f64,
+    /// Bytes that undo and redo may hold.
+    pub undo_bytes: usize,
+    /// A weight for each vertex of the mesh, from 0, free, to 1, held: those that are held keep their bits.
+    pub weights: *const f64,
+    /// Number of weights.
+    pub weight_count: usize,
+    /// What else a recipe says under `mask`, in JSON: `{"pins": [...], "mirror": [...], "fade": 0.1}`.
+    pub mask: *const c_char,
+}
+
+/// How one stroke works. Zeros and NULL stand for the usual.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct StrokeOptions {
+    /// Whether all triangles stay; otherwise edges in the tool's reach are split, collapsed and flipped.
+    pub keep_triangles: bool,
+    /// Edges longer than this are split, model units.
+    pub longest_edge: f64,
+    /// No split goes beyond this number of triangles.
+    pub max_triangles: usize,
+    /// Balls in which the triangles stay: x, y, z and radius of each, model units.
+    pub keep: *const f64,
+    /// Number of balls.
+    pub keep_count: usize,
 }
 
 /// Buffers for a renderer, in place: the session's own memory, until the session changes.
@@ -101,68 +144,85 @@ pub struct StrokeReceipt {
     pub forgotten_strokes: usize,
 }
 
-/// A point of the surface that a query found.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct Hit {
-    /// The triangle.
-    pub triangle: u32,
-    /// Its vertices.
-    pub vertices: [u32; 3],
-    /// The point, model units.
-    pub point: [f64; 3],
-    /// Unit normal of the triangle.
-    pub normal: [f64; 3],
-    /// Distance from where the query began, model units.
-    pub distance: f64,
-}
-
-/// Opens a session on a copy of a manifold, oriented mesh. `step` is the travel of the tool in one time step as in a recipe, zero
-/// for the usual; `undo_bytes` limits undo, zero for the usual.
+/// Opens a session on a manifold, oriented mesh, which may be given back before the session. `options` may be NULL.
 ///
 /// # Safety
-/// `mesh` is a handle; `session` can be written to.
+/// `mesh` is a handle; `options` is NULL or has `weight_count` weights and a mask that is NULL or a text; `session` can be written to.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_new(
     mesh: *const Mesh,
-    step: f64,
-    undo_bytes: usize,
+    options: *const SessionOptions,
     session: *mut *mut Session,
 ) -> Status {
     guarded(|| {
         // SAFETY: as the caller promises.
-        let mesh = unsafe { reference("mesh", mesh) }?;
-        let default = SessionOptions::default();
-        let options = SessionOptions {
-            step: if step == 0.0 { default.step } else { step },
-            undo_bytes: if undo_bytes == 0 { default.undo_bytes } else { undo_bytes },
-            ..default
-        };
-        let opened =
-            session::Session::open(mesh.mesh.clone(), options).map_err(|error| Failure::new(Status::Mesh, error))?;
+        let (mesh, options) = unsafe { (reference("mesh", mesh)?, options.as_ref()) };
+        let mut chosen = session::SessionOptions::default();
+        if let Some(options) = options {
+            if options.step != 0.0 {
+                chosen.step = options.step;
+            }
+            if options.undo_bytes != 0 {
+                chosen.undo_bytes = options.undo_bytes;
+            }
+            // SAFETY: as the caller promises.
+            chosen.mask = unsafe { mask(options) }?;
+        }
+        let opened = session::Session::open(Arc::clone(&mesh.mesh), chosen)
+            .map_err(|error| Failure::new(Status::Mesh, error))?;
+        let opened = Session { session: opened, changed: Default::default(), reached: Vec::new(), arrows: Vec::new() };
         // SAFETY: as the caller promises.
-        unsafe { hand_over("session", session, Session { session: opened, changed: Default::default() }) }
+        unsafe { hand_over("session", session, opened) }
     })
 }
 
-/// Begins a stroke; nothing moves before the second pose. `refine` lets edges in the tool's reach be split, those longer than
-/// `longest_edge` (model units; zero for the usual), and collapsed and flipped.
+/// # Safety
+/// The weights and the text are as the options say.
+unsafe fn mask(options: &SessionOptions) -> Result<Mask, Failure> {
+    let mut mask = Mask::default();
+    if !options.mask.is_null() {
+        // SAFETY: as the caller promises.
+        let words = unsafe { text("options.mask", options.mask) }?;
+        mask = serde_json::from_str(words).map_err(|error| Failure::new(Status::Recipe, format!("mask: {error}")))?;
+    }
+    if !options.weights.is_null() {
+        // SAFETY: as the caller promises.
+        let weights = unsafe { array("options.weights", options.weights, options.weight_count) }?;
+        mask.vertices = Some(VertexWeights::Values(weights.to_vec()));
+    }
+    Ok(mask)
+}
+
+/// Begins a stroke; nothing moves before the second pose. `options` may be NULL.
 ///
 /// # Safety
-/// `session` and `tool` are handles.
+/// `session` and `tool` are handles; `options` is NULL or has four values for each of its balls.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_begin_stroke(
     session: *mut Session,
     tool: *const Tool,
-    refine: bool,
-    longest_edge: f64,
+    options: *const StrokeOptions,
 ) -> Status {
     guarded(|| {
         // SAFETY: as the caller promises.
         let (session, tool) = unsafe { (reference_mut("session", session)?, reference("tool", tool)?) };
-        let longest = (longest_edge != 0.0).then_some(longest_edge);
-        let refine = refine.then(|| InteractiveRefinement { longest, ..InteractiveRefinement::default() });
-        Ok(session.session.begin_stroke(&tool.tool, StrokeOptions { refine })?)
+        let mut refinement = InteractiveRefinement::default();
+        let mut keeps_triangles = false;
+        // SAFETY: as the caller promises.
+        if let Some(options) = unsafe { options.as_ref() } {
+            keeps_triangles = options.keep_triangles;
+            if options.longest_edge != 0.0 {
+                refinement.longest = Some(options.longest_edge);
+            }
+            if options.max_triangles != 0 {
+                refinement.max_triangles = options.max_triangles;
+            }
+            // SAFETY: as the caller promises.
+            let balls = unsafe { array("options.keep", options.keep.cast::<[f64; 4]>(), options.keep_count) }?;
+            refinement.keep = balls.iter().map(|&[x, y, z, radius]| (DVec3::new(x, y, z), radius)).collect();
+        }
+        let options = session::StrokeOptions { refine: (!keeps_triangles).then_some(refinement) };
+        Ok(session.session.begin_stroke(&tool.tool, options)?)
     })
 }
 
@@ -180,17 +240,22 @@ pub unsafe extern "C" fn isochore_session_move_to(
 ) -> Status {
     guarded(|| {
         // SAFETY: as the caller promises.
-        let (session, at, rotate) = unsafe {
-            (
-                reference_mut("session", session)?,
-                *reference("at", at.cast::<[f64; 3]>())?,
-                rotate.cast::<[f64; 4]>().as_ref(),
-            )
-        };
-        let key = Key { at, rotate: rotate.copied().unwrap_or([0.0, 0.0, 1.0, 0.0]) };
+        let (session, key) = unsafe { (reference_mut("session", session)?, key(at, rotate)?) };
         session.session.move_to(&key.pose(), time)?;
         Ok(())
     })
+}
+
+/// # Safety
+/// `at` is NULL or has three values, `rotate` is NULL or has four.
+unsafe fn key(at: *const f64, rotate: *const f64) -> Result<Key, Failure> {
+    let no_turn = [0.0, 0.0, 1.0, 0.0];
+    // SAFETY: as the caller promises.
+    unsafe {
+        let at = array("at", at, 3)?;
+        let rotate = if rotate.is_null() { &no_turn } else { array("rotate", rotate, 4)? };
+        Ok(Key { at: [at[0], at[1], at[2]], rotate: [rotate[0], rotate[1], rotate[2], rotate[3]] })
+    }
 }
 
 /// Ends the stroke. `receipt` may be NULL.
@@ -329,60 +394,25 @@ pub unsafe extern "C" fn isochore_session_changed(
     })
 }
 
-/// The first point of the surface on a ray; `is_hit` tells whether there is one.
+/// Keeps the edges at some vertices of the mesh as opened from being split, collapsed or flipped from now on, and frees all others.
 ///
 /// # Safety
-/// `session` is a handle; `origin` and `direction` have three values; `hit` and `is_hit` can be written to.
+/// `session` is a handle; there are `count` vertices.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn isochore_session_pick(
-    session: *const Session,
-    origin: *const f64,
-    direction: *const f64,
-    hit: *mut Hit,
-    is_hit: *mut bool,
+pub unsafe extern "C" fn isochore_session_freeze_edges(
+    session: *mut Session,
+    vertices: *const u32,
+    count: usize,
 ) -> Status {
     guarded(|| {
         // SAFETY: as the caller promises.
-        unsafe {
-            let session = &reference("session", session)?.session;
-            let [origin, direction] = [point("origin", origin)?, point("direction", direction)?];
-            answer(session.pick(origin, direction), hit, is_hit)
+        let (session, vertices) = unsafe { (reference_mut("session", session)?, array("vertices", vertices, count)?) };
+        let opened = session.session.opened().positions.len();
+        if let Some(beyond) = vertices.iter().find(|vertex| **vertex as usize >= opened) {
+            return Err(Failure::argument(format!("{beyond} is none of the {opened} vertices of the mesh as opened")));
         }
-    })
-}
-
-/// The point of the surface nearest to a point; `is_hit` tells whether there is one.
-///
-/// # Safety
-/// `session` is a handle; `from` has three values; `hit` and `is_hit` can be written to.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn isochore_session_closest_point(
-    session: *const Session,
-    from: *const f64,
-    hit: *mut Hit,
-    is_hit: *mut bool,
-) -> Status {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        unsafe {
-            let session = &reference("session", session)?.session;
-            answer(session.closest_point(point("from", from)?), hit, is_hit)
-        }
-    })
-}
-
-/// Volume inside the surface without the stroke under way, cubic model units; an open surface is an error.
-///
-/// # Safety
-/// `session` is a handle; `volume` can be written to.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn isochore_session_volume(session: *const Session, volume: *mut f64) -> Status {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let enclosed = unsafe { reference("session", session) }?.session.volume();
-        let enclosed = enclosed.ok_or_else(|| Failure::new(Status::Mesh, "the surface is open"))?;
-        // SAFETY: as the caller promises.
-        unsafe { put("volume", volume, enclosed) }
+        session.session.freeze_edges(vertices);
+        Ok(())
     })
 }
 
@@ -410,7 +440,7 @@ pub unsafe extern "C" fn isochore_session_export(session: *const Session, lock: 
         // SAFETY: as the caller promises.
         let exported = unsafe { reference("session", session) }?.session.export(lock);
         // SAFETY: as the caller promises.
-        unsafe { hand_over("mesh", mesh, Mesh { mesh: exported.mesh }) }
+        unsafe { hand_over("mesh", mesh, Mesh { mesh: exported.mesh.into() }) }
     })
 }
 
@@ -422,30 +452,4 @@ pub unsafe extern "C" fn isochore_session_export(session: *const Session, lock: 
 pub unsafe extern "C" fn isochore_session_free(session: *mut Session) {
     // SAFETY: as the caller promises.
     unsafe { free(session) }
-}
-
-/// # Safety
-/// `values` is NULL or has three values.
-unsafe fn point(name: &str, values: *const f64) -> Result<DVec3, Failure> {
-    // SAFETY: as the caller promises.
-    let values = unsafe { array(name, values, 3) }?;
-    Ok(DVec3::from_slice(values))
-}
-
-/// # Safety
-/// `hit` and `is_hit` are NULL or can be written to.
-unsafe fn answer(found: Option<SurfaceHit>, hit: *mut Hit, is_hit: *mut bool) -> Result<(), Failure> {
-    if let Some(found) = &found {
-        let found = Hit {
-            triangle: found.triangle,
-            vertices: found.vertices,
-            point: found.point.to_array(),
-            normal: found.normal.to_array(),
-            distance: found.distance,
-        };
-        // SAFETY: as the caller promises.
-        unsafe { put("hit", hit, found) }?;
-    }
-    // SAFETY: as the caller promises.
-    unsafe { put("is_hit", is_hit, found.is_some()) }
 }

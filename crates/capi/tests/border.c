@@ -18,6 +18,10 @@
 static const double CORNERS[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 static const uint32_t FACES[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
 
+static const char *const BALL = "{\"shape\": {\"kind\": \"sphere\", \"radius\": 0.3}, \"support\": 0.3}";
+static const char *const WIDE_BALL = "{\"shape\": {\"kind\": \"sphere\", \"radius\": 0.4}, \"support\": 1}";
+static const IsochoreStrokeOptions UNREFINED = {true, 0, 0, NULL, 0}, FINE = {false, 0.2, 0, NULL, 0};
+
 static const char *const TWIST =
     "{ \"recipe\": 1, \"target\": { \"mesh\": \"tetrahedron\" }, \"stroke\": [ { \"kind\": \"twist\","
     " \"origin\": [0, 0, 0], \"axis\": [0, 0, 1], \"degrees_per_unit\": 10.0 } ] }";
@@ -109,14 +113,14 @@ static void sessions(void) {
     CHECK(strstr(isochore_last_error(), "shape") && tool == NULL);
     CHECK(isochore_tool_new("ball", "{\"shape\": {\"kind\": \"sphere\", \"radius\": 0.3}, \"support\": 1}", NULL, 0, NULL, NULL,
                             &tool) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_new(mesh, 0, 0, &session) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_take_changes(session) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_changed(session, ISOCHORE_BUFFER_INDICES, &ranges, &count) == ISOCHORE_STATUS_OK);
     CHECK(count == 1 && ranges[0].start == 0 && ranges[0].end == 4);
     CHECK(isochore_session_changed(session, 4, &ranges, &count) == ISOCHORE_STATUS_ARGUMENT);
 
     CHECK(isochore_session_end_stroke(session, NULL) == ISOCHORE_STATUS_STATE);
-    CHECK(isochore_session_begin_stroke(session, tool, false, 0) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_begin_stroke(session, tool, &UNREFINED) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_undo(session, &done) == ISOCHORE_STATUS_STATE);
     CHECK(isochore_session_move_to(session, nowhere, NULL, 0) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
@@ -156,11 +160,167 @@ static void sessions(void) {
     isochore_mesh_free(mesh);
 }
 
+/* Tells what a host wants to draw, and that a session needs neither its mesh nor its tool any more. */
+static void queries(void) {
+    const double above[] = {0.2, 0.2, 0.5}, below[] = {0.2, 0.2, 0.3}, turn[] = {0, 0, 1, 90}, nowhere[] = {NAN, 0, 0};
+    IsochoreMesh *mesh = tetrahedron();
+    IsochoreTool *tool = NULL;
+    IsochoreSession *session = NULL;
+    IsochoreOrigin origin;
+    IsochoreStrokeReceipt receipt;
+    const uint32_t *vertices = NULL;
+    const IsochoreArrow *arrows = NULL;
+    size_t count = 9, rim = 0;
+    double outward = 0, inward = 0;
+
+    CHECK(isochore_tool_new("ball", BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
+    isochore_mesh_free(mesh);
+
+    /* Of the corners only (0, 0, 0), 0.57 away, and (0, 0, 1), as far, are nearer than 0.6. */
+    CHECK(isochore_session_vertices_in_reach(session, tool, above, turn, &vertices, &count) == ISOCHORE_STATUS_OK);
+    CHECK(count == 2 && vertices[0] == 0 && vertices[1] == 3);
+    CHECK(isochore_session_vertices_in_reach(session, tool, nowhere, NULL, &vertices, &count) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_session_vertices_in_reach(session, NULL, above, NULL, &vertices, &count) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(count == 2 && vertices[1] == 3);
+
+    CHECK(isochore_session_preview(session, tool, above, NULL, below, turn, 9, &arrows, &count) == ISOCHORE_STATUS_OK);
+    CHECK(count > 100 && count < 9 * 9 * 9);
+    for (size_t i = 0; i < count; i++) {
+        double x = arrows[i].point[0] - 0.2, y = arrows[i].point[1] - 0.2, z = arrows[i].point[2] - 0.5;
+        /* What the ball holds goes with it, whatever else it turns. */
+        CHECK(x * x + y * y + z * z > 0.001 || fabs(arrows[i].shift[2] + 0.2) < 1e-6);
+        CHECK(sqrt(x * x + y * y + z * z) < 0.6 + 0.2);
+        rim += fabs(arrows[i].shift[2]) < 0.1;
+    }
+    CHECK(rim > 0);
+    CHECK(isochore_session_preview(session, tool, above, NULL, nowhere, NULL, 9, &arrows, &count) == ISOCHORE_STATUS_ARGUMENT);
+
+    CHECK(isochore_session_origin(session, 3, &origin) == ISOCHORE_STATUS_OK);
+    CHECK(origin.vertex == 3 && origin.triangle < 4);
+    CHECK(origin.weights[0] + origin.weights[1] + origin.weights[2] == 1);
+    CHECK(isochore_session_origin(session, 4, &origin) == ISOCHORE_STATUS_ARGUMENT);
+
+    CHECK(isochore_session_moved_volume(session, &outward, &inward) == ISOCHORE_STATUS_OK && outward == 0 && inward == 0);
+    CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
+    isochore_tool_free(tool);
+    CHECK(isochore_session_move_to(session, above, NULL, 0) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, below, turn, 1) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_moved_volume(session, &outward, &inward) == ISOCHORE_STATUS_OK && outward > 0 && inward > 0);
+    CHECK(isochore_session_cancel_stroke(session) == ISOCHORE_STATUS_OK);
+
+    /* A ball around everything, and a budget that is used up, let no edge be split. */
+    const double around[] = {0, 0, 0, 3};
+    IsochoreStrokeOptions strokes[] = {{false, 0.2, 0, around, 1}, {false, 0.2, 4, NULL, 0}, FINE};
+    for (int stroke = 0; stroke < 3; stroke++) {
+        CHECK(isochore_tool_new("ball", BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
+        CHECK(isochore_session_begin_stroke(session, tool, &strokes[stroke]) == ISOCHORE_STATUS_OK);
+        CHECK(isochore_session_move_to(session, above, NULL, 0) == ISOCHORE_STATUS_OK);
+        CHECK(isochore_session_move_to(session, below, NULL, 1) == ISOCHORE_STATUS_OK);
+        CHECK(isochore_session_end_stroke(session, &receipt) == ISOCHORE_STATUS_OK);
+        CHECK((receipt.inserted_vertices > 0) == (stroke == 2));
+        isochore_tool_free(tool);
+    }
+    strokes[0].longest_edge = -1;
+    CHECK(isochore_session_begin_stroke(session, NULL, &strokes[0]) == ISOCHORE_STATUS_ARGUMENT);
+    isochore_session_free(session);
+}
+
+static void masks(void) {
+    const double start[] = {0.3, 0.3, 0.8}, end[] = {0.3, 0.3, 0.3};
+    const double weights[] = {0, 1, 0, 0}, wrong[] = {0, 0, 2, 0};
+    const uint32_t vertices[] = {0, 1, 2, 3, 4};
+    IsochoreMesh *mesh = tetrahedron(), *moved = NULL;
+    IsochoreTool *tool = NULL;
+    IsochoreSession *session = NULL;
+    IsochoreStrokeReceipt receipt;
+    IsochoreSessionOptions options;
+    memset(&options, 0, sizeof options);
+
+    options.weights = wrong;
+    options.weight_count = 4;
+    CHECK(isochore_session_new(mesh, &options, &session) == ISOCHORE_STATUS_MESH && session == NULL);
+    CHECK(strstr(isochore_last_error(), "mask.vertices.2"));
+    options.weights = weights;
+    options.weight_count = 3;
+    CHECK(isochore_session_new(mesh, &options, &session) == ISOCHORE_STATUS_MESH);
+    CHECK(strstr(isochore_last_error(), "3 weights for 4 vertices"));
+    options.mask = "{\"pin\": []}";
+    CHECK(isochore_session_new(mesh, &options, &session) == ISOCHORE_STATUS_RECIPE);
+    CHECK(strstr(isochore_last_error(), "mask") && session == NULL);
+
+    options.weight_count = 4;
+    options.mask = "{\"fade\": 0.1}";
+    CHECK(isochore_session_new(mesh, &options, &session) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_freeze_edges(session, vertices, 5) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(strstr(isochore_last_error(), "4 is none"));
+    CHECK(isochore_session_freeze_edges(session, vertices, 4) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_tool_new("ball", WIDE_BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_end_stroke(session, &receipt) == ISOCHORE_STATUS_OK && receipt.inserted_vertices == 0);
+    CHECK(isochore_session_export(session, false, &moved) == ISOCHORE_STATUS_OK);
+    for (size_t vertex = 0; vertex < 4; vertex++) {
+        bool is_still = memcmp(isochore_mesh_positions(moved) + 3 * vertex, CORNERS + 3 * vertex, 3 * sizeof(double)) == 0;
+        CHECK(is_still == (vertex == 1));
+    }
+    isochore_mesh_free(moved);
+    isochore_session_free(session);
+    isochore_tool_free(tool);
+    isochore_mesh_free(mesh);
+}
+
+/* Each vertex has two joints of its own, so that those of any other are the joints of its neighbors. */
+static void skins(void) {
+    const uint32_t joints[] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const double weights[] = {1, 3, 1, 3, 1, 3, 1, 3}, wrong[] = {1, 3, 1, 3, -1, 3, 1, 3};
+    const double start[] = {0.3, 0.3, 0.8}, end[] = {0.3, 0.3, 0.3};
+    IsochoreMesh *mesh = tetrahedron(), *refined = NULL;
+    IsochoreTool *tool = NULL;
+    IsochoreSession *session = NULL;
+
+    CHECK(isochore_mesh_skin_influences(mesh) == 0 && isochore_mesh_skin_influences(NULL) == 0);
+    CHECK(isochore_mesh_set_skin(mesh, 2, joints, wrong) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(strstr(isochore_last_error(), "vertex 2") && isochore_mesh_skin_influences(mesh) == 0);
+    CHECK(isochore_mesh_set_skin(mesh, 0, NULL, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_mesh_set_skin(mesh, SIZE_MAX / 2, joints, weights) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_mesh_set_skin(mesh, 2, joints, weights) == ISOCHORE_STATUS_OK);
+
+    CHECK(isochore_tool_new("ball", WIDE_BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_end_stroke(session, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_export(session, false, &refined) == ISOCHORE_STATUS_OK);
+    size_t count = isochore_mesh_vertex_count(refined), each = isochore_mesh_skin_influences(refined);
+    CHECK(count > 4 && each == 2);
+    uint32_t *found = (uint32_t *)malloc(count * each * sizeof *found);
+    double *shares = (double *)malloc(count * each * sizeof *shares);
+    CHECK(isochore_mesh_skin(refined, found, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_mesh_skin(refined, found, shares) == ISOCHORE_STATUS_OK);
+    for (size_t vertex = 0; vertex < count; vertex++) {
+        CHECK(fabs(shares[2 * vertex] + shares[2 * vertex + 1] - 1) < 1e-15);
+        CHECK(found[2 * vertex] < 8 && found[2 * vertex + 1] < 8);
+        CHECK(vertex >= 4 || (found[2 * vertex] == 2 * vertex && shares[2 * vertex] == 0.25));
+    }
+    free(found);
+    free(shares);
+    isochore_mesh_free(refined);
+    isochore_session_free(session);
+    isochore_tool_free(tool);
+    isochore_mesh_free(mesh);
+}
+
 int main(int count, char **arguments) {
     CHECK(count == 2);
     meshes(arguments[1]);
     faulty_meshes();
     recipes();
     sessions();
+    queries();
+    masks();
+    skins();
     return 0;
 }

@@ -39,7 +39,7 @@ fn install_under(prefix: &Path) -> TaskResult {
     Ok(())
 }
 
-/// Installs into the target folder, builds the example and the tests with what pkg-config says, as C and as C++, and runs them, the tests
+/// Installs into the target folder, builds the examples and the tests with what pkg-config says, as C and as C++, and runs them, the tests
 /// also under valgrind.
 pub(crate) fn test_programs() -> TaskResult {
     let prefix = target().join("capi");
@@ -47,7 +47,9 @@ pub(crate) fn test_programs() -> TaskResult {
     let flags = pkg_config_flags(&prefix)?;
     let programs = [
         ("cc", "-std=c11", "examples/press.c"),
+        ("cc", "-std=c11", "examples/sculpt.c"),
         ("cc", "-std=c11", "tests/border.c"),
+        ("cc", "-std=c11", "tests/random_calls.c"),
         ("c++", "-xc++", "examples/press.c"),
     ];
     for (compiler, language, source) in programs {
@@ -64,6 +66,7 @@ pub(crate) fn test_programs() -> TaskResult {
             memory_check.args([
                 "--quiet",
                 "--leak-check=full",
+                "--show-leak-kinds=definite",
                 "--errors-for-leak-kinds=definite",
                 "--error-exitcode=1",
             ]);
