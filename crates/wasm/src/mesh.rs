@@ -1,5 +1,7 @@
 //! Triangle meshes.
 
+use std::sync::Arc;
+
 use bytemuck::cast_slice;
 use glam::DVec3;
 use isochore_mesh::{
@@ -15,7 +17,7 @@ use crate::error::thrown;
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Mesh {
-    pub(crate) mesh: TriMesh,
+    pub(crate) mesh: Arc<TriMesh>,
 }
 
 #[wasm_bindgen]
@@ -31,14 +33,14 @@ impl Mesh {
         }
         let mesh = TriMesh::new(points.iter().map(|point| DVec3::from(*point)).collect(), triangles.to_vec());
         mesh.check_valid().map_err(thrown)?;
-        Ok(Self { mesh })
+        Ok(Self { mesh: mesh.into() })
     }
 
     /// Reads the bytes of a mesh file; `format` is its extension: obj, glb, ply, stl, off.
     #[wasm_bindgen(js_name = fromBytes)]
     pub fn from_bytes(bytes: &[u8], format: &str) -> Result<Mesh, JsError> {
         let mesh = io::read_bytes(parse_format(format)?, bytes).map_err(thrown)?;
-        Ok(Self { mesh })
+        Ok(Self { mesh: mesh.into() })
     }
 
     /// The bytes of a mesh file; `format` is its extension.

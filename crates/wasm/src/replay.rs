@@ -1,5 +1,7 @@
 //! Recipes carried out.
 
+use std::sync::Arc;
+
 use isochore_mesh::Silent;
 use isochore_sculpt::{Meshes, Recipe as RecipeData, Report, Source, recipe::Format, replay};
 use wasm_bindgen::prelude::*;
@@ -41,7 +43,7 @@ impl Recipe {
     /// Gives it a mesh that it names.
     #[wasm_bindgen(js_name = setMesh)]
     pub fn set_mesh(&mut self, name: String, mesh: &Mesh) {
-        self.meshes.insert(name, mesh.mesh.clone());
+        self.meshes.insert(name, Arc::clone(&mesh.mesh));
     }
 
     /// Deforms the target.
@@ -50,7 +52,7 @@ impl Recipe {
         let source = Source { text: self.text.as_bytes(), overrides: &[] };
         let report = Report::new(&self.recipe, source, &replay, &replay.deformed.mesh, &Silent).map_err(thrown)?;
         let report = serde_json::to_string(&report).map_err(thrown)?;
-        Ok(Replay { mesh: Mesh { mesh: replay.deformed.mesh }, report })
+        Ok(Replay { mesh: Mesh { mesh: replay.deformed.mesh.into() }, report })
     }
 }
 

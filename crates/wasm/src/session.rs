@@ -62,18 +62,50 @@ pub struct Hit {
 
 #[wasm_bindgen]
 impl Session {
-    /// Opens a session on a manifold, oriented mesh, which it takes.
+    /// Opens a session on a manifold, oriented mesh. `weights` holds its vertices, by a number for each from 0, free, to 1, held, a
+    /// `Float64Array` or a `Float32Array`; `mask` is what else a recipe says under that key, in JSON:
+    /// `{"pins": […], "mirror": […], "fade": 0.1}`.
     #[wasm_bindgen(constructor)]
-    pub fn new(mesh: Mesh) -> Result<Session, JsError> {
-        let session = session::Session::open(mesh.mesh, SessionOptions::default()).map_err(thrown)?;
+    pub fn new(mesh: &Mesh, weights: Option<Vec<f64>>, mask: Option<String>) -> Result<Session, JsError> {
+        let mut options = SessionOptions::default();
+        if let Some(mask) = mask {
+            options.mask = serde_json::from_str(&mask).map_err(|error| thrown(format!("mask: {error}")))?;
+        }
+        if let Some(weights) = weights {
+            options.mask.vertices = Some(recipe::VertexWeights::Values(weights));
+        }
+        let session = session::Session::open(Arc::clone(&mesh.mesh), options).map_err(thrown)?;
         Ok(Self { session })
     }
 
+    /// Keeps the edges at some vertices of the mesh as opened from being split, collapsed or flipped from now on, and frees all
+    /// others.
+    #[wasm_bindgen(js_name = freezeEdges)]
+    pub fn freeze_edges(&mut self, vertices: &[u32]) -> Result<(), JsError> {
+        let opened = self.session.opened().positions.len();
+        if let Some(beyond) = vertices.iter().find(|vertex| **vertex as usize >= opened) {
+            return Err(thrown(format!("{beyond} is none of the {opened} vertices of the mesh as opened")));
+        }
+        self.session.freeze_edges(vertices);
+        Ok(())
+    }
+
     /// Begins a stroke; nothing moves before the second pose. `refine` lets edges in the tool's reach be split, those longer than
-    /// `longest_edge` where it is given (model units), and collapsed and flipped.
+    /// `longest_edge` where it is given (model units), up to `max_triangles`, and collapsed and flipped.
     #[wasm_bindgen(js_name = beginStroke)]
-    pub fn begin_stroke(&mut self, tool: &Tool, refine: bool, longest_edge: Option<f64>) -> Result<(), JsError> {
-        let refinement = InteractiveRefinement { longest: longest_edge, ..InteractiveRefinement::default() };
+    pub fn begin_stroke(
+        &mut self,
+        tool: &Tool,
+        refine: bool,
+        longest_edge: Option<f64>,
+        max_triangles: Option<u32>,
+    ) -> Result<(), JsError> {
+        let usual = InteractiveRefinement::default();
+        let refinement = InteractiveRefinement {
+            longest: longest_edge,
+            max_triangles: max_triangles.map_or(usual.max_triangles, |most| most as usize),
+            ..usual
+        };
         let options = StrokeOptions { refine: refine.then_some(refinement) };
         self.session.begin_stroke(&tool.tool, options).map_err(thrown)
     }
@@ -165,7 +197,7 @@ impl Session {
 
     /// The surface as a mesh of its own; `lock` gives back the volume of the mesh as opened.
     pub fn export(&self, lock: bool) -> Mesh {
-        Mesh { mesh: self.session.export(lock).mesh }
+        Mesh { mesh: self.session.export(lock).mesh.into() }
     }
 }
 
