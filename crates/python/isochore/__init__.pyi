@@ -1,6 +1,6 @@
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,12 +37,16 @@ class Mesh:
         triangles: ArrayLike,
         *,
         uvs: Iterable[ArrayLike] | None = None,
+        normals: ArrayLike | None = None,
         colors: ArrayLike | None = None,
+        skin: tuple[ArrayLike, ArrayLike] | None = None,
     ) -> None:
         """Copies the arrays.
 
         positions: (V, 3) numbers, model units. triangles: (T, 3) integers, counter-clockwise seen from outside.
-        uvs: sets of texture coordinates, (T, 3, 2) each, by corner, so that seams do not open the surface. colors: (V, 4), linear RGBA, 0 to 1.
+        uvs: sets of texture coordinates, (T, 3, 2) each, by corner, so that seams do not open the surface. normals: for
+        shading, by corner, (T, 3, 3), of any length; they turn with the surface. colors: (V, 4), linear RGBA, 0 to 1.
+        skin: joints (V, K), integers, and their weights (V, K), which are divided by the sum of each row; weight 0 is for places not used.
         """
 
     @classmethod
@@ -79,8 +83,16 @@ class Mesh:
         """Sets of texture coordinates by corner, (T, 3, 2) each; views."""
 
     @property
+    def normals(self) -> NDArray[np.float64] | None:
+        """Shading normals by corner, (T, 3, 3), unit length; a view."""
+
+    @property
     def colors(self) -> NDArray[np.float64] | None:
         """(V, 4), linear RGBA by vertex; a view."""
+
+    @property
+    def skin(self) -> tuple[NDArray[np.uint32], NDArray[np.float64]] | None:
+        """Joints (V, K) and their weights (V, K), where K is the most that a vertex has; rows sum to 1, or to 0 without joints. A copy."""
 
     @property
     def volume(self) -> float:
@@ -181,21 +193,34 @@ class Session:
         *,
         step: float | None = None,
         undo_bytes: int | None = None,
-        normals: str = "area",
+        normals: Literal["area", "angle"] = "area",
+        mask: ArrayLike | Mapping[str, Any] | None = None,
     ) -> None:
         """Opens a session on a manifold, oriented mesh.
 
         step: travel of the tool in one time step, as `integrate.step` of a recipe. undo_bytes: what undo and redo may hold; beyond, the
         oldest strokes are forgotten. normals: how triangles are weighted in vertex normals, by "area" or "angle".
+        mask: a weight for each vertex, (V,), from 0, free, to 1, held; or what a recipe says under `mask`, {"pins": [...], "mirror": [...],
+        "vertices": weights, "fade": length}. Vertices that are held keep their bits.
         """
 
     def begin_stroke(
-        self, tool: Tool, *, refine: bool = True, longest_edge: float | None = None, max_triangles: int | None = None
+        self,
+        tool: Tool,
+        *,
+        refine: bool = True,
+        longest_edge: float | None = None,
+        max_triangles: int | None = None,
+        keep: Sequence[tuple[ArrayLike, float]] = ...,
     ) -> None:
         """Begins a stroke; nothing moves before the second pose.
 
         refine: whether edges in the tool's reach are split, collapsed and flipped. longest_edge: longer ones are split, model units.
+        keep: balls, by center (3,) and radius, in which the triangles stay as they are.
         """
+
+    def freeze_edges(self, vertices: ArrayLike) -> None:
+        """Keeps the edges at these vertices (N,) of the mesh as opened from being split, collapsed or flipped, and frees all others."""
 
     def move_to(
         self, at: ArrayLike, *, rotate: ArrayLike = ..., time: float = 0.0
@@ -277,6 +302,12 @@ class Session:
     @property
     def history(self) -> dict[str, int]:
         """Strokes `undoable`, `redoable` and `forgotten`, and `bytes` held for them."""
+
+    def origins(self) -> tuple[NDArray[np.uint32], NDArray[np.float64]]:
+        """Where on the mesh as opened render vertices take their attributes from: triangles (R,) and barycentric coordinates (R, 3).
+
+        A vertex without triangles has the triangle 2**32 - 1 and coordinates of zero.
+        """
 
     def vertices_of_render_vertices(self) -> NDArray[np.uint32]:
         """Number (R,) of the vertex of each render vertex."""

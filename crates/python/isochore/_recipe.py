@@ -7,6 +7,7 @@ import pathlib
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from isochore._json import to_json
 from isochore._native import Error, LoadedRecipe, Mesh
 
 
@@ -34,14 +35,14 @@ def run_points(recipe, points, *, meshes=None, settings=(), progress=None):
 def _load(recipe, meshes, settings):
     """The recipe, and what its names stand for: meshes, curves and the weights of its mask."""
     if isinstance(recipe, Mapping):
-        folder, text, is_json = pathlib.Path(), json.dumps(recipe), True
+        folder, text, is_json = pathlib.Path(), to_json(recipe), True
     else:
         path = pathlib.Path(os.fspath(recipe))
         folder, text, is_json = path.parent, path.read_text(encoding="utf-8"), path.suffix.lower() == ".json"
     if not isinstance(settings, Mapping):
         settings = [str(setting) for setting in settings]
     else:
-        settings = [f"{key}={json.dumps(value)}" for key, value in settings.items()]
+        settings = [f"{key}={to_json(value)}" for key, value in settings.items()]
     loaded = LoadedRecipe(text, is_json, settings)
     found = {name: meshes[name] if name in meshes else Mesh.read(folder / name) for name in loaded.mesh_names}
     curves = {name: [row[:3] for row in _rows(folder / name, (3, 6))] for name in loaded.curve_names}

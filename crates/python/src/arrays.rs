@@ -61,16 +61,28 @@ pub(crate) fn finite_numbers<'a>(name: &str, array: &'a PyReadonlyArrayDyn<'_, f
     }
 }
 
-/// Vertex indices of shape (N, 3) from an array of any integers.
-pub(crate) fn triangles(array: &Bound<'_, PyAny>) -> Result<Vec<[u32; 3]>, Failure> {
+/// Indices from an array of any integers, in any shape.
+pub(crate) fn indices<'py>(name: &str, array: &Bound<'py, PyAny>) -> Result<PyReadonlyArrayDyn<'py, i64>, Failure> {
     let py = array.py();
     let made = get_array_module(py)?.call_method1(intern!(py, "asarray"), (array,))?;
     let kind: String = made.getattr(intern!(py, "dtype"))?.getattr(intern!(py, "kind"))?.extract()?;
-    if kind != "i" && kind != "u" {
+    // An empty list has no integers in it, but nothing else either.
+    let is_empty = made.getattr(intern!(py, "size"))?.eq(0)?;
+    if kind != "i" && kind != "u" && !is_empty {
         let dtype = made.getattr(intern!(py, "dtype"))?;
-        return Err(Failure::Argument(format!("triangles must be integers, not {dtype}")));
+        return Err(Failure::Argument(format!("{name} must be integers, not {dtype}")));
     }
-    let made = contiguous::<i64>(&made)?;
+    contiguous::<i64>(&made)
+}
+
+/// The index that a number must be.
+pub(crate) fn index(name: &str, number: i64) -> Result<u32, Failure> {
+    u32::try_from(number).map_err(|_| Failure::Argument(format!("{name}: {number} is no index")))
+}
+
+/// Vertex indices of shape (N, 3) from an array of any integers.
+pub(crate) fn triangles(array: &Bound<'_, PyAny>) -> Result<Vec<[u32; 3]>, Failure> {
+    let made = indices("triangles", array)?;
     check_shape("triangles", made.shape(), &[None, Some(3)])?;
     let index = |&number: &i64| u32::try_from(number);
     let (corners, _) = numbers("triangles", &made)?.as_chunks::<3>();

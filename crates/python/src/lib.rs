@@ -3,6 +3,7 @@
 mod arrays;
 mod distance;
 mod error;
+mod keys;
 mod mesh;
 mod replay;
 mod session;

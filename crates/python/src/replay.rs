@@ -75,7 +75,7 @@ impl LoadedRecipe {
             let source = Source { text: self.text.as_bytes(), overrides: &self.settings };
             let report = Report::new(&recipe, source, &replay, &replay.deformed.mesh, monitor)?;
             let report = serde_json::to_string(&report).expect("a report has only strings for keys");
-            Ok((Mesh { mesh: replay.deformed.mesh }, Mesh { mesh: replay.deformed.rest }, report))
+            Ok((Mesh { mesh: replay.deformed.mesh.into() }, Mesh { mesh: replay.deformed.rest.into() }, report))
         })
     }
 

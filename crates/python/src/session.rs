@@ -8,6 +8,7 @@ use std::sync::{
 use bytemuck::Pod;
 use glam::DVec3;
 use isochore_field::Pose;
+use isochore_mesh::{NONE, Origin};
 use isochore_sculpt::{
     recipe::Key,
     session::{self, DirtyRange, InteractiveRefinement, NormalWeights, RenderBuffers, SessionOptions, StrokeOptions},
@@ -20,8 +21,9 @@ use pyo3::{
 };
 
 use crate::{
-    arrays::{points_to_array, view},
+    arrays::{index, indices, numbers, points_to_array, view},
     error::Failure,
+    keys,
     mesh::{Mesh, mesh_of},
     tool::Tool,
 };
@@ -52,14 +54,16 @@ impl Drop for Hold {
 #[pymethods]
 impl Session {
     #[new]
-    #[pyo3(signature = (mesh, *, step = None, undo_bytes = None, normals = "area"))]
+    #[pyo3(signature = (mesh, *, step = None, undo_bytes = None, normals = "area", mask = None))]
     fn new(
         py: Python<'_>,
         mesh: &Bound<'_, PyAny>,
         step: Option<f64>,
         undo_bytes: Option<usize>,
         normals: &str,
+        mask: Option<&Bound<'_, PyAny>>,
     ) -> Result<Self, Failure> {
+        let mesh = mesh_of(mesh)?;
         let default = SessionOptions::default();
         let options = SessionOptions {
             step: step.unwrap_or(default.step),
@@ -69,14 +73,14 @@ impl Session {
                 "angle" => NormalWeights::Angle,
                 other => return Err(Failure::Argument(format!("normals are by \"area\" or \"angle\", not {other:?}"))),
             },
-            ..default
+            mask: mask.map_or(Ok(default.mask), |given| keys::mask(given, mesh.positions.len()))?,
+            target: default.target,
         };
-        let mesh = mesh_of(mesh)?;
         let session = py.detach(|| session::Session::open(mesh, options)).map_err(Failure::input)?;
         Ok(Self { session: Mutex::new(session), views: Arc::default() })
     }
 
-    #[pyo3(signature = (tool, *, refine = true, longest_edge = None, max_triangles = None))]
+    #[pyo3(signature = (tool, *, refine = true, longest_edge = None, max_triangles = None, keep = Vec::new()))]
     fn begin_stroke(
         &self,
         py: Python<'_>,
@@ -84,11 +88,13 @@ impl Session {
         refine: bool,
         longest_edge: Option<f64>,
         max_triangles: Option<usize>,
+        keep: Vec<([f64; 3], f64)>,
     ) -> Result<(), Failure> {
         let default = InteractiveRefinement::default();
         let refinement = InteractiveRefinement {
             longest: longest_edge,
             max_triangles: max_triangles.unwrap_or(default.max_triangles),
+            keep: keep.into_iter().map(|(center, radius)| (center.into(), radius)).collect(),
             ..default
         };
         let options = StrokeOptions { refine: refine.then_some(refinement) };
@@ -153,6 +159,23 @@ impl Session {
         self.change(py, |session| session.redo().map_err(Failure::input))
     }
 
+    /// Keeps the edges at these vertices of the mesh as opened from being split, collapsed or flipped, and frees all others.
+    fn freeze_edges(&self, py: Python<'_>, vertices: &Bound<'_, PyAny>) -> Result<(), Failure> {
+        let vertices = indices("vertices", vertices)?;
+        let vertices = numbers("vertices", &vertices)?.iter().map(|&vertex| index("vertices", vertex));
+        let vertices: Vec<u32> = vertices.collect::<Result<_, _>>()?;
+        self.change(py, |session| {
+            let count = session.opened().positions.len();
+            if let Some(beyond) = vertices.iter().find(|vertex| **vertex as usize >= count) {
+                return Err(Failure::Argument(format!(
+                    "vertices: {beyond} is none of the {count} of the mesh as opened"
+                )));
+            }
+            session.freeze_edges(&vertices);
+            Ok(())
+        })
+    }
+
     /// All strokes that are done and not undone, as the keys of a recipe.
     fn log<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let text = self.lock().log().to_json();
@@ -164,7 +187,7 @@ impl Session {
     fn export<'py>(&self, py: Python<'py>, lock: bool) -> PyResult<(Mesh, Bound<'py, PyAny>)> {
         let exported = py.detach(|| self.lock().export(lock));
         let vertices = exported.vertices.into_pyarray(py).into_any();
-        Ok((Mesh { mesh: exported.mesh }, vertices))
+        Ok((Mesh { mesh: exported.mesh.into() }, vertices))
     }
 
     #[getter]
@@ -284,6 +307,16 @@ impl Session {
         let count = session.buffers().positions.len() as u32;
         let vertices: Vec<u32> = (0..count).map(|render| session.vertex_of(render)).collect();
         vertices.into_pyarray(py).into_any()
+    }
+
+    /// By render vertex, the triangle of the mesh as opened that it takes its attributes from, and its barycentric coordinates there.
+    fn origins<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let session = self.lock();
+        let origins = (0..session.buffers().positions.len() as u32).map(|render| session.origin_of(render));
+        let nowhere = Origin { triangle: NONE, weights: DVec3::ZERO };
+        let (triangles, weights): (Vec<u32>, Vec<DVec3>) =
+            origins.map(|origin| origin.unwrap_or(nowhere)).map(|origin| (origin.triangle, origin.weights)).unzip();
+        Ok((triangles.into_pyarray(py).into_any(), points_to_array(py, weights)?.into_any()))
     }
 
     fn __repr__(&self) -> String {

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use isochore_sculpt::{Meshes, recipe, session::SessionTool};
-use pyo3::{prelude::*, types::PyDict};
+use pyo3::prelude::*;
 
-use crate::{error::Failure, mesh::mesh_of, watch::watched};
+use crate::{error::Failure, keys::keys, mesh::mesh_of, watch::watched};
 
 /// A tool ready to work, made once and shared between strokes and sessions.
 #[pyclass(frozen, module = "isochore")]
@@ -20,17 +20,12 @@ impl Tool {
     #[pyo3(signature = (description, *, name = "tool", mesh = None, progress = None))]
     fn new(
         py: Python<'_>,
-        description: &Bound<'_, PyDict>,
+        description: &Bound<'_, PyAny>,
         name: &str,
         mesh: Option<&Bound<'_, PyAny>>,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> Result<Self, Failure> {
-        let text: String = py.import("json")?.call_method1("dumps", (description,))?.extract()?;
-        let description: recipe::Tool = serde_json::from_str(&text).map_err(|error| Failure::Recipe {
-            message: format!("tools.{name}: {error}"),
-            key: Some(format!("tools.{name}")),
-            line: None,
-        })?;
+        let description: recipe::Tool = keys(&format!("tools.{name}"), description)?;
         let mut meshes = Meshes::new();
         if let (recipe::ToolShape::Mesh(shape), Some(mesh)) = (&description.shape, mesh) {
             meshes.insert(shape.mesh.clone(), mesh_of(mesh)?);

@@ -77,11 +77,38 @@ def test_unusable_meshes_are_refused():
 def test_attributes_come_back():
     uvs = np.arange(6.0).reshape(1, 3, 2)
     colors = np.linspace(0, 1, 12).reshape(3, 4)
-    mesh = isochore.Mesh(np.eye(3), [[0, 1, 2]], uvs=[uvs], colors=colors)
+    normals = np.array([[[2, 0, 0], [0, 3, 0], [3, 0, 4]]])
+    mesh = isochore.Mesh(np.eye(3), [[0, 1, 2]], uvs=[uvs], normals=normals, colors=colors)
     assert np.array_equal(mesh.uvs, [uvs]) and np.array_equal(mesh.colors, colors)
-    assert isochore.Mesh(np.eye(3), [[0, 1, 2]]).uvs == []
+    assert mesh.normals == pytest.approx(np.array([[[1, 0, 0], [0, 1, 0], [0.6, 0, 0.8]]]), abs=1e-15)
+    bare = isochore.Mesh(np.eye(3), np.array([[0, 1, 2]])[::-1])
+    assert bare.uvs == [] and bare.normals is None and bare.colors is None
+    with pytest.raises(ValueError, match="no direction"):
+        isochore.Mesh(np.eye(3), [[0, 1, 2]], normals=np.zeros((1, 3, 3)))
+    with pytest.raises(ValueError, match="normals must have the shape"):
+        isochore.Mesh(np.eye(3), [[0, 1, 2]], normals=np.ones((3, 3)))
     with pytest.raises(ValueError, match="colors"):
         isochore.Mesh(np.eye(3), [[0, 1, 2]], colors=np.full((3, 4), np.inf))
+
+
+def test_normals_turn_with_the_surface(cube):
+    flat = np.cross(*(cube.positions[cube.triangles[:, side]] - cube.positions[cube.triangles[:, 0]] for side in (1, 2)))
+    mesh = isochore.Mesh(cube.positions, cube.triangles, normals=np.repeat(flat, 3, axis=0).reshape(-1, 3, 3))
+    stroke = {"kind": "twist", "origin": [0, 0, 0], "axis": [0, 0, 1], "degrees_per_unit": 60.0}
+    recipe = {"recipe": 1, "target": {"mesh": "cube"}, "stroke": [stroke], "refine": {"enabled": False}, "volume": {"lock": False}}
+    turned = isochore.run(recipe, meshes={"cube": mesh}).mesh
+    # The top is turned by 30 degrees in itself, so that its normals stay.
+    top = np.all(cube.positions[cube.triangles][:, :, 2] == 0.5, axis=1)
+    assert turned.normals[top] == pytest.approx(np.broadcast_to([0, 0, 1.0], (2, 3, 3)), abs=1e-12)
+    assert np.linalg.norm(turned.normals, axis=2) == pytest.approx(np.ones((12, 3)), abs=1e-15)
+    assert not np.allclose(turned.normals[~top], mesh.normals[~top])
+
+
+def test_nothing_is_a_mesh_too():
+    empty = isochore.Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
+    assert empty.positions.shape == empty.triangles.shape == (0, 3)
+    with pytest.raises(ValueError, match="string"):
+        isochore.Mesh([["a", "b", "c"]], [[0, 0, 0]])
 
 
 def test_files(cube, tmp_path):
