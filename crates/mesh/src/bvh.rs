@@ -1,14 +1,13 @@
 //! A bounding volume hierarchy over triangles, and the closest point on them.
 
+mod build;
 mod closest_point;
 mod unit_frame;
 
 #[cfg(test)]
 mod tests;
 
-use glam::{DVec3, Vec3A};
-use obvhs::bvh2::Bvh2;
-use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::Aabb;
@@ -28,7 +27,7 @@ const PRUNING_SLACK: f64 = 1.0 + 1e-14;
 /// Triangles that one task looks at.
 const TRIANGLES_AT_ONCE: usize = 1 << 14;
 
-/// A node: an inner one has its children at `first` and `first + 1`, a leaf has `count` triangles from `first` on.
+/// A node: an inner one has its children at `first` and `first + 1`, a leaf has its triangles from `first` on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node {
     /// Smallest coordinates in the unit frame, rounded down.
@@ -36,7 +35,7 @@ pub(crate) struct Node {
     /// Largest coordinates in the unit frame, rounded up.
     pub(crate) max: [f32; 3],
     pub(crate) first: u32,
-    /// Zero for inner nodes.
+    /// Triangles below it; at most [`LEAF_TRIANGLES`] in a leaf, and more in inner nodes.
     pub(crate) count: u32,
 }
 
@@ -76,8 +75,8 @@ pub struct Bvh {
     order: Vec<u32>,
     /// Vertex indices, in leaf order.
     triangles: Vec<[u32; 3]>,
-    /// Corners in the unit frame, in leaf order.
-    corners: Vec<[DVec3; 3]>,
+    /// Vertices in the unit frame.
+    positions: Vec<DVec3>,
 }
 
 impl Bvh {
@@ -92,29 +91,17 @@ impl Bvh {
     /// Builds the hierarchy of triangles that have these [`checked_bounds`].
     pub(crate) fn within(bounds: Aabb, positions: &[DVec3], triangles: &[[u32; 3]]) -> Self {
         let frame = UnitFrame::around(bounds);
-        let local: Vec<_> = positions.par_iter().map(|&position| frame.inward(position)).collect();
-        let boxes = outward_boxes(&local, triangles);
-
-        // The portable builder: the convenience functions around it read the clock, which WebAssembly has not.
-        let indices = (0..boxes.len() as u32).collect();
-        let tree = PlocBuilder::new().build(PlocSearchDistance::Low, &boxes, indices, SortPrecision::U64, 2);
-        let (nodes, order) = with_larger_leaves(&tree);
-        Self {
-            bounds,
-            frame,
-            depth: depth(&nodes),
-            nodes,
-            corners: order.par_iter().map(|&i| triangles[i as usize].map(|vertex| local[vertex as usize])).collect(),
-            triangles: order.par_iter().map(|&i| triangles[i as usize]).collect(),
-            order,
-        }
+        let positions: Vec<DVec3> = positions.par_iter().map(|&position| frame.inward(position)).collect();
+        let (nodes, order) = build::nodes_and_order(&positions, triangles);
+        let triangles = order.par_iter().map(|&triangle| triangles[triangle as usize]).collect();
+        Self { bounds, frame, depth: depth(&nodes), nodes, order, triangles, positions }
     }
 
     /// The point of the triangles nearest to `point`, and the feature it lies on. Of equally near ones, any, but always the same.
     pub fn closest_point(&self, point: DVec3) -> ClosestPoint {
         let local = self.frame.inward(point);
         let nearest = self.nearest(local, None);
-        let corners = &self.corners[nearest.slot as usize];
+        let corners = &self.corners(nearest.slot);
         let (on_triangle, _) = closest_on_triangle(local, corners);
         ClosestPoint {
             point: self.frame.outward(on_triangle.point),
@@ -129,7 +116,7 @@ impl Bvh {
     pub(crate) fn nearest(&self, point: DVec3, guess: Option<u32>) -> SquaredDistance {
         let mut best = SquaredDistance { slot: 0, squared: f64::INFINITY };
         if let Some(slot) = guess {
-            best = SquaredDistance { slot, squared: closest_on_triangle(point, &self.corners[slot as usize]).1 };
+            best = SquaredDistance { slot, squared: closest_on_triangle(point, &self.corners(slot)).1 };
         }
         let mut stack = Vec::with_capacity(self.depth + 1);
         stack.push((0, self.nodes[0].squared_distance(point)));
@@ -138,9 +125,9 @@ impl Bvh {
                 continue;
             }
             let node = &self.nodes[index as usize];
-            if node.count > 0 {
+            if node.is_leaf() {
                 for slot in node.first..node.first + node.count {
-                    let (_, squared) = closest_on_triangle(point, &self.corners[slot as usize]);
+                    let (_, squared) = closest_on_triangle(point, &self.corners(slot));
                     if squared < best.squared {
                         best = SquaredDistance { slot, squared };
                     }
@@ -187,13 +174,25 @@ impl Bvh {
         &self.triangles
     }
 
-    /// Corners of the triangles in the unit frame, in leaf order.
-    pub(crate) fn corners(&self) -> &[[DVec3; 3]] {
-        &self.corners
+    /// Vertices in the unit frame.
+    pub(crate) fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    /// Corners of a triangle in the unit frame, by its place in leaf order.
+    #[inline(always)]
+    pub(crate) fn corners(&self, slot: u32) -> [DVec3; 3] {
+        let [a, b, c] = self.triangles[slot as usize];
+        [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 }
 
 impl Node {
+    #[inline(always)]
+    pub(crate) fn is_leaf(&self) -> bool {
+        self.count <= LEAF_TRIANGLES
+    }
+
     /// Squared distance from a point of the unit frame to the box, zero inside.
     pub(crate) fn squared_distance(&self, point: DVec3) -> f64 {
         let min = DVec3::from_array(self.min.map(f64::from));
@@ -231,66 +230,10 @@ pub(crate) fn checked_bounds(positions: &[DVec3], triangles: &[[u32; 3]]) -> Res
     parts.into_iter().try_fold(Aabb::EMPTY, |bounds, part| Ok(bounds.union(part?)))
 }
 
-/// The smallest boxes that hold each triangle, but for rounding the coordinates outward to `f32`.
-fn outward_boxes(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<obvhs::aabb::Aabb> {
-    // A little more than half a unit in the last place, so that rounding to nearest ends beyond; without a branch, which would be
-    // foretold wrong every other time.
-    let slack = |x: f64| x.abs() * f64::from(f32::EPSILON) + f64::from(f32::MIN_POSITIVE);
-    let rounded: Vec<[[f32; 3]; 2]> = (positions.par_iter())
-        .map(|p| [p.to_array().map(|x| (x - slack(x)) as f32), p.to_array().map(|x| (x + slack(x)) as f32)])
-        .collect();
-    let outward_box = |triangle: &[u32; 3]| {
-        let [a, b, c] = triangle.map(|vertex| rounded[vertex as usize].map(Vec3A::from_array));
-        obvhs::aabb::Aabb::new(a[0].min(b[0]).min(c[0]), a[1].max(b[1]).max(c[1]))
-    };
-    triangles.par_iter().map(outward_box).collect()
-}
-
-/// The nodes of a new tree, which has one triangle a leaf, cut where [`LEAF_TRIANGLES`] remain: children behind their parents and beside each
-/// other, and the triangles below any node beside each other in the order that comes with them.
-fn with_larger_leaves(tree: &Bvh2) -> (Vec<Node>, Vec<u32>) {
-    // Triangles below each node; children come after their parents.
-    let mut below = vec![1_u32; tree.nodes.len()];
-    for (i, node) in tree.nodes.iter().enumerate().rev() {
-        if !node.is_leaf() {
-            below[i] = below[node.first_index as usize] + below[node.first_index as usize + 1];
-        }
-    }
-    let node = |source: u32, first: u32, count: u32| {
-        let aabb = tree.nodes[source as usize].aabb();
-        Node { min: aabb.min.to_array(), max: aabb.max.to_array(), first, count }
-    };
-    let mut order = Vec::with_capacity(tree.primitive_indices.len());
-    let mut nodes = Vec::with_capacity(tree.nodes.len());
-    nodes.push(node(0, 0, 0));
-    let mut pending = vec![(0, 0)];
-    let mut leaf = Vec::new();
-    while let Some((source, place)) = pending.pop() {
-        if below[source as usize] <= LEAF_TRIANGLES {
-            nodes[place] = node(source, order.len() as u32, below[source as usize]);
-            leaf.push(source);
-            while let Some(part) = leaf.pop() {
-                let part = &tree.nodes[part as usize];
-                if part.is_leaf() {
-                    order.push(tree.primitive_indices[part.first_index as usize]);
-                } else {
-                    leaf.extend([part.first_index + 1, part.first_index]);
-                }
-            }
-        } else {
-            let (first, children) = (nodes.len(), tree.nodes[source as usize].first_index);
-            nodes[place].first = first as u32;
-            nodes.extend([node(children, 0, 0), node(children + 1, 0, 0)]);
-            pending.extend([(children + 1, first + 1), (children, first)]);
-        }
-    }
-    (nodes, order)
-}
-
 fn depth(nodes: &[Node]) -> usize {
     let mut depths = vec![1; nodes.len()];
     for (i, node) in nodes.iter().enumerate() {
-        if node.count == 0 {
+        if !node.is_leaf() {
             depths[node.first as usize] = depths[i] + 1;
             depths[node.first as usize + 1] = depths[i] + 1;
         }

@@ -2,17 +2,20 @@
 
 mod exact_distance;
 mod flat_triangle;
+mod grain;
 mod grid;
 mod interpolant;
 mod lipschitz;
 mod oriented_box;
 mod packet;
 mod patches;
+mod preparation;
 mod real;
 mod row_crossings;
 mod sampling;
 mod signs;
 mod spline;
+mod vector;
 
 #[cfg(test)]
 mod tests;

@@ -25,6 +25,7 @@ mod journaled;
 mod measure;
 mod mesh_distance;
 mod monitor;
+mod morton_order;
 mod position_table;
 pub mod primitives;
 mod pseudo_normals;

@@ -70,7 +70,7 @@ impl MeshDistance {
             Sides::PseudoNormals(normals) => {
                 let local = self.bvh.frame().inward(point);
                 let slot = self.bvh.nearest(local, None).slot;
-                let (nearest, _) = closest_on_triangle(local, &self.bvh.corners()[slot as usize]);
+                let (nearest, _) = closest_on_triangle(local, &self.bvh.corners(slot));
                 normals.is_inside(&self.bvh, local, slot, &nearest)
             }
             Sides::WindingNumber(winding_number) => winding_number.is_inside(point),
@@ -85,7 +85,7 @@ impl MeshDistance {
     fn signed(&self, point: DVec3) -> (f64, DVec3) {
         let local = self.bvh.frame().inward(point);
         let found = self.bvh.nearest(local, None);
-        let (nearest, _) = closest_on_triangle(local, &self.bvh.corners()[found.slot as usize]);
+        let (nearest, _) = closest_on_triangle(local, &self.bvh.corners(found.slot));
         let is_inside = match &self.sides {
             Sides::PseudoNormals(normals) => normals.is_inside(&self.bvh, local, found.slot, &nearest),
             Sides::WindingNumber(winding_number) => winding_number.is_inside(point),

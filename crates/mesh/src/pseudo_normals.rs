@@ -21,15 +21,18 @@ impl PseudoNormals {
     /// Normals of a surface with this many vertices.
     pub(crate) fn new(bvh: &Bvh, vertices: usize) -> Self {
         let topology = Topology::of_triangles(bvh.triangles(), vertices);
-        let faces: Vec<DVec3> =
-            bvh.corners().iter().map(|&[a, b, c]| (b - a).cross(c - a).normalize_or_zero()).collect();
+        let faces: Vec<DVec3> = (0..bvh.triangles().len() as u32)
+            .map(|slot| bvh.corners(slot))
+            .map(|[a, b, c]| (b - a).cross(c - a).normalize_or_zero())
+            .collect();
         let mut normals = Self {
             edges: vec![DVec3::ZERO; topology.edges.len()],
             vertices: vec![DVec3::ZERO; vertices],
             faces,
             topology,
         };
-        for (slot, (triangle, corners)) in bvh.triangles().iter().zip(bvh.corners()).enumerate() {
+        for (slot, triangle) in bvh.triangles().iter().enumerate() {
+            let corners = bvh.corners(slot as u32);
             let normal = normals.faces[slot];
             for edge in normals.topology.triangle_edges(slot) {
                 normals.edges[edge as usize] += normal;
@@ -45,10 +48,11 @@ impl PseudoNormals {
 
     /// Whether a point of the unit frame lies inside, given its nearest triangle and the nearest point there.
     pub(crate) fn is_inside(&self, bvh: &Bvh, point: DVec3, slot: u32, nearest: &OnTriangle) -> bool {
+        let corners = bvh.corners(slot);
         let slot = slot as usize;
         match nearest.feature {
             // From a corner, because the offset from the nearest point is all rounding close to the surface.
-            Feature::Face => self.faces[slot].dot(point - bvh.corners()[slot][0]) < 0.0,
+            Feature::Face => self.faces[slot].dot(point - corners[0]) < 0.0,
             Feature::Edge(k) => {
                 let edge = self.topology.triangle_edges(slot)[k as usize];
                 self.edges[edge as usize].dot(point - nearest.point) < 0.0

@@ -74,26 +74,15 @@ impl SurfaceTree {
     /// Takes over the nodes of `bvh` down to where few enough triangles are left.
     fn copy(&mut self, bvh: &Bvh) {
         let source = bvh.nodes();
-        // Triangles below each node, and the first of them in leaf order.
-        let mut below = vec![(0_u32, 0_u32); source.len()];
-        for (index, node) in source.iter().enumerate().rev() {
-            below[index] = if node.count > 0 {
-                (node.first, node.count)
-            } else {
-                let [left, right] = [0, 1].map(|child| below[node.first as usize + child]);
-                (left.0.min(right.0), left.1 + right.1)
-            };
-        }
+        let mut rest = bvh.order().iter();
         let mut pending = vec![(0, 0)];
         while let Some((from, to)) = pending.pop() {
-            let (first, count) = below[from];
-            if count <= LEAF_TRIANGLES || source[from].count > 0 {
-                for &triangle in &bvh.order()[first as usize..(first + count) as usize] {
-                    self.link(triangle, to as u32);
-                }
+            let count = source[from].count;
+            if count <= LEAF_TRIANGLES {
+                rest.by_ref().take(count as usize).for_each(|&triangle| self.link(triangle, to as u32));
             } else {
-                let child = self.add_children(to as u32);
-                pending.extend([0, 1].map(|side| (source[from].first as usize + side, child as usize + side)));
+                let (children, child) = (source[from].first as usize, self.add_children(to as u32) as usize);
+                pending.extend([(children + 1, child + 1), (children, child)]);
             }
         }
     }

@@ -49,9 +49,9 @@ impl WindingNumber {
         let mut clusters = vec![Cluster::EMPTY; bvh.nodes().len()];
         // Children come after their parents.
         for (i, node) in bvh.nodes().iter().enumerate().rev() {
-            let parts = if node.count > 0 {
-                let held = node.first as usize..(node.first + node.count) as usize;
-                Cluster::join(bvh.corners()[held].iter().map(Cluster::of_triangle))
+            let parts = if node.is_leaf() {
+                let held = node.first..node.first + node.count;
+                Cluster::join(held.map(|slot| Cluster::of_triangle(&bvh.corners(slot))))
             } else {
                 let first = node.first as usize;
                 Cluster::join(clusters[first..first + 2].iter().copied())
@@ -93,9 +93,9 @@ impl WindingNumber {
         while let Some(index) = stack.pop() {
             let (node, cluster) = (&self.bvh.nodes()[index as usize], &self.clusters[index as usize]);
             let gap = (cluster.center - center).length() - cluster.radius - reach;
-            if gap > cluster.radius || (node.count > 0 && gap > 0.0) {
+            if gap > cluster.radius || (node.is_leaf() && gap > 0.0) {
                 angle += cluster.area / (gap * gap);
-            } else if node.count == 0 {
+            } else if !node.is_leaf() {
                 stack.extend([node.first, node.first + 1]);
             } else {
                 return false;
@@ -148,9 +148,9 @@ impl WindingNumber {
                 continue;
             }
             let node = &nodes[index as usize];
-            if node.count > 0 {
+            if node.is_leaf() {
                 for slot in node.first..node.first + node.count {
-                    angle += solid_angle(self.bvh.corners()[slot as usize].map(|corner| corner - point));
+                    angle += solid_angle(self.bvh.corners(slot).map(|corner| corner - point));
                 }
             } else {
                 stack.push(node.first + 1);

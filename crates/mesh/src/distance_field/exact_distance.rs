@@ -1,6 +1,8 @@
 use glam::DVec3;
 
 use super::packet::{LANES, NOTHING};
+use super::vector::{cross, dot, minus};
+use crate::Bvh;
 use crate::extremes::lesser;
 
 type Lanes = [f64; LANES];
@@ -29,10 +31,11 @@ impl Points {
 /// edges and, if the point is above the triangle, to its plane. Every candidate is a convex combination of corners, so that the
 /// result is right however thin the triangle is.
 #[inline(always)]
-pub(super) fn exact_squared_distances(points: &Points, corners: &[[DVec3; 3]], slots: &[u32; LANES]) -> Lanes {
+pub(super) fn exact_squared_distances(points: &Points, bvh: &Bvh, slots: &[u32; LANES]) -> Lanes {
     let mut held = [const { Points::ZERO }; 3];
     for lane in 0..LANES {
-        if let Some(triangle) = corners.get(slots[lane] as usize) {
+        if slots[lane] != NOTHING {
+            let triangle = bvh.corners(slots[lane]);
             for k in 0..3 {
                 held[k].set(lane, triangle[k]);
             }
@@ -69,21 +72,4 @@ pub(super) fn exact_squared_distances(points: &Points, corners: &[[DVec3; 3]], s
         squared[i] = if slots[i] == NOTHING { f64::INFINITY } else { squared[i] };
     }
     squared
-}
-
-type Vector = [f64; 3];
-
-#[inline(always)]
-fn minus(a: Vector, b: Vector) -> Vector {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

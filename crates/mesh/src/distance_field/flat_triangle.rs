@@ -1,7 +1,9 @@
-use glam::{DVec2, DVec3};
-
 use super::packet::{LANES, Packet};
+use super::vector::{Vector, cross, dot, minus, square};
 use crate::extremes::{greater, lesser};
+
+/// Coordinates of a point in each lane.
+pub(super) type Lanes3 = [[f64; LANES]; 3];
 
 /// A triangle in its own plane: corners at (0, 0), (`base`, 0) and `left_length` · `left`.
 #[derive(Debug, Clone, Copy)]
@@ -20,37 +22,69 @@ pub(super) struct FlatTriangle {
 }
 
 impl FlatTriangle {
-    /// Puts the longest edge along the first axis, which keeps slivers well-conditioned. A triangle without area lies in any
-    /// plane through its longest edge.
-    pub(super) fn new(corners: &[DVec3; 3]) -> Self {
-        let [ab, bc, ca] = [0, 1, 2].map(|k: usize| (corners[(k + 1) % 3] - corners[k]).length_squared());
-        let longest = if ab >= bc && ab >= ca {
-            0
-        } else if bc >= ca {
-            1
-        } else {
-            2
-        };
-        let [a, b, c] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
-        let base = (b - a).length();
-        let along = (b - a).try_normalize().unwrap_or(DVec3::X);
-        let height = (c - a) - along * along.dot(c - a);
-        let across = height.try_normalize().unwrap_or_else(|| along.any_orthonormal_vector());
-        let apex = DVec2::new(along.dot(c - a), across.dot(c - a));
-        let right = apex - DVec2::new(base, 0.0);
-        let f = |v: DVec3| v.to_array().map(|x| x as f32);
-        // An edge without length may have any direction, but must have one.
-        let f2 = |v: DVec2| v.try_normalize().unwrap_or(DVec2::X).to_array().map(|x| x as f32);
-        Self {
-            origin: f(a),
-            along: f(along),
-            across: f(across),
-            normal: f(along.cross(across)),
-            base: base as f32,
-            right: f2(right),
-            right_length: right.length() as f32,
-            left: f2(apex),
-            left_length: apex.length() as f32,
+    pub(super) const NONE: Self = Self {
+        origin: [0.0; 3],
+        along: [0.0; 3],
+        across: [0.0; 3],
+        normal: [0.0; 3],
+        base: 0.0,
+        right: [0.0; 2],
+        right_length: 0.0,
+        left: [0.0; 2],
+        left_length: 0.0,
+    };
+
+    /// Puts the longest edge of each triangle along the first axis, which keeps slivers well-conditioned. A triangle without area
+    /// lies in any plane through its longest edge.
+    #[inline(always)]
+    pub(super) fn set_each(triangles: &mut [Self], corners: &[Lanes3; 3]) {
+        let [mut base, mut right_length, mut left_length] = [[0.0; LANES]; 3];
+        let [mut origins, mut alongs, mut acrosses, mut normals] = [[[0.0; LANES]; 3]; 4];
+        let [mut rights, mut lefts] = [[[0.0; LANES]; 2]; 2];
+        for i in 0..LANES {
+            let (p, q, r) = (at(&corners[0], i), at(&corners[1], i), at(&corners[2], i));
+            let (pq, qr, rp) = (square(minus(q, p)), square(minus(r, q)), square(minus(p, r)));
+            let is_first = (pq >= qr) & (pq >= rp);
+            let is_second = qr >= rp;
+            let a = select(is_first, p, select(is_second, q, r));
+            let b = select(is_first, q, select(is_second, r, p));
+            let c = select(is_first, r, select(is_second, p, q));
+            let (along, length) = direction(minus(b, a), [1.0, 0.0, 0.0]);
+            let to_apex = minus(c, a);
+            let u = dot(along, to_apex);
+            let height = minus(to_apex, [along[0] * u, along[1] * u, along[2] * u]);
+            let (across, _) = direction(height, any_across(along));
+            let apex = [u, dot(across, to_apex), 0.0];
+            // An edge without length may have any direction, but must have one.
+            let (right, right_size) = direction([apex[0] - length, apex[1], 0.0], [1.0, 0.0, 0.0]);
+            let (left, left_size) = direction(apex, [1.0, 0.0, 0.0]);
+            let normal = cross(along, across);
+            for axis in 0..3 {
+                origins[axis][i] = a[axis] as f32;
+                alongs[axis][i] = along[axis] as f32;
+                acrosses[axis][i] = across[axis] as f32;
+                normals[axis][i] = normal[axis] as f32;
+            }
+            for axis in 0..2 {
+                rights[axis][i] = right[axis] as f32;
+                lefts[axis][i] = left[axis] as f32;
+            }
+            base[i] = length as f32;
+            right_length[i] = right_size as f32;
+            left_length[i] = left_size as f32;
+        }
+        for (i, triangle) in triangles.iter_mut().enumerate().take(LANES) {
+            *triangle = Self {
+                origin: [origins[0][i], origins[1][i], origins[2][i]],
+                along: [alongs[0][i], alongs[1][i], alongs[2][i]],
+                across: [acrosses[0][i], acrosses[1][i], acrosses[2][i]],
+                normal: [normals[0][i], normals[1][i], normals[2][i]],
+                base: base[i],
+                right: [rights[0][i], rights[1][i]],
+                right_length: right_length[i],
+                left: [lefts[0][i], lefts[1][i]],
+                left_length: left_length[i],
+            };
         }
     }
 
@@ -100,4 +134,36 @@ impl FlatTriangle {
 #[inline(always)]
 fn clamp(x: f32, limit: f32) -> f32 {
     lesser(greater(x, 0.0), limit)
+}
+
+/// The point in a lane.
+#[inline(always)]
+pub(super) fn at(lanes: &Lanes3, lane: usize) -> Vector {
+    [lanes[0][lane], lanes[1][lane], lanes[2][lane]]
+}
+
+#[inline(always)]
+fn select(condition: bool, one: Vector, other: Vector) -> Vector {
+    [
+        if condition { one[0] } else { other[0] },
+        if condition { one[1] } else { other[1] },
+        if condition { one[2] } else { other[2] },
+    ]
+}
+
+/// The vector over its length, and that length; `or` in place of the direction of none.
+#[inline(always)]
+fn direction(vector: Vector, or: Vector) -> (Vector, f64) {
+    let length = square(vector).sqrt();
+    let scale = 1.0 / length;
+    let scaled = [vector[0] * scale, vector[1] * scale, vector[2] * scale];
+    (select(scale < f64::INFINITY, scaled, or), length)
+}
+
+/// A unit vector at right angles to this one. J. Duff et al., *Building an Orthonormal Basis, Revisited* (2017).
+#[inline(always)]
+fn any_across([x, y, z]: Vector) -> Vector {
+    let sign = if z < 0.0 { -1.0 } else { 1.0 };
+    let share = -1.0 / (sign + z);
+    [x * y * share, sign + y * y * share, -y]
 }

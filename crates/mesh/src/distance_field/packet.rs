@@ -3,11 +3,8 @@
 //! Neighbors share their way through the hierarchy and start from what the packet beside them found, and the arithmetic has no
 //! branches, so that lanes become vector registers.
 
-use rayon::prelude::*;
-
 use super::Grid;
-use super::flat_triangle::FlatTriangle;
-use super::oriented_box::OrientedBox;
+use super::preparation::Preparation;
 use crate::{Aabb, Bvh};
 
 /// Nodes in a packet along x, y and z.
@@ -25,9 +22,7 @@ const MIDDLE: usize = 5;
 /// Triangles and boxes prepared for the kernel, with the hierarchy to find them in.
 #[derive(Debug)]
 pub(super) struct PacketSearch {
-    /// The hierarchy's nodes.
-    boxes: Vec<OrientedBox>,
-    triangles: Vec<FlatTriangle>,
+    prepared: Preparation,
     largest: f64,
 }
 
@@ -73,8 +68,7 @@ impl PacketSearch {
         let bounds = grid.bounds();
         let extent = Aabb { min: bvh.frame().inward(bounds.min), max: bvh.frame().inward(bounds.max) };
         let largest = extent.min.abs().max(extent.max.abs()).max_element();
-        let triangles = bvh.corners().par_iter().map(FlatTriangle::new).collect();
-        Self { boxes: OrientedBox::of_nodes(bvh, largest), triangles, largest }
+        Self { prepared: Preparation::new(bvh, largest), largest }
     }
 
     /// The largest coordinate of a node in the unit frame.
@@ -82,11 +76,17 @@ impl PacketSearch {
         self.largest
     }
 
+    /// Square of the length of the longest edge in the unit frame.
+    pub(super) fn longest_edge2(&self) -> f64 {
+        self.prepared.longest2
+    }
+
     /// Finds the nearest triangle for each lane. `guesses` are triangles likely to be near; they save time. `stack` is scratch.
     #[inline(always)]
     pub(super) fn search(&self, packet: &mut Packet, guesses: &[u32], stack: &mut Vec<Pending>) {
+        let Preparation { boxes, triangles, .. } = &self.prepared;
         for &slot in guesses {
-            self.triangles[slot as usize].update(packet, slot);
+            triangles[slot as usize].update(packet, slot);
         }
         stack.clear();
         stack.push(Pending { squared: [0.0; LANES], node: 0 });
@@ -97,14 +97,14 @@ impl PacketSearch {
             let mut index = pending.node;
             // Down to a leaf or to where no box is near enough, the nearer box first.
             loop {
-                let Some(first) = self.boxes[index].children() else {
-                    for slot in self.boxes[index].triangles() {
-                        self.triangles[slot as usize].update(packet, slot);
+                let Some(first) = boxes[index].children() else {
+                    for slot in boxes[index].triangles() {
+                        triangles[slot as usize].update(packet, slot);
                     }
                     break;
                 };
-                let left = self.boxes[first].squared_distances(packet);
-                let right = self.boxes[first + 1].squared_distances(packet);
+                let left = boxes[first].squared_distances(packet);
+                let right = boxes[first + 1].squared_distances(packet);
                 index = match (packet.may_improve(&left), packet.may_improve(&right)) {
                     (false, false) => break,
                     (true, false) => first,

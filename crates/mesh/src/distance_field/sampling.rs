@@ -41,7 +41,7 @@ pub(super) fn unsigned(
         monitor.check("distance", done as f64 / slabs as f64)
     })?;
     let farthest = samples.par_iter().copied().reduce(|| 0.0, f32::max);
-    Ok((samples, error_bound(bvh, search.largest_coordinate(), f64::from(farthest))))
+    Ok((samples, error_bound(bvh, search, f64::from(farthest))))
 }
 
 /// Layers of a grid as thick as a packet.
@@ -97,7 +97,7 @@ fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], found: &mut 
             index.iter().for_each(|&index| samples[index] = band as f32);
             continue;
         }
-        let squared = exact_squared_distances(&points, bvh.corners(), &packet.slot);
+        let squared = exact_squared_distances(&points, bvh, &packet.slot);
         for lane in 0..LANES {
             samples[index[lane]] = (squared[lane].sqrt() / scale).min(band) as f32;
         }
@@ -117,12 +117,10 @@ const EPSILON: f64 = f32::EPSILON as f64 / 2.0;
 ///
 /// So the distance by which a triangle is chosen is off by δ = ε (√3 (E + 1) + 12 (d + L)), and the chosen triangle is no more than
 /// 2δ farther than the nearest. Its distance is then rounded to `f32`: ε d.
-fn error_bound(bvh: &Bvh, largest: f64, farthest: f64) -> f64 {
-    let longest_edge2 = (bvh.corners().iter())
-        .map(|&[a, b, c]| a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)))
-        .fold(0.0, f64::max);
+fn error_bound(bvh: &Bvh, search: &PacketSearch, farthest: f64) -> f64 {
     let scale = bvh.frame().scale();
     let distance = farthest * scale;
-    let choice = EPSILON * (3f64.sqrt() * (largest + 1.0) + 12.0 * (distance + longest_edge2.sqrt()));
+    let choice = EPSILON
+        * (3f64.sqrt() * (search.largest_coordinate() + 1.0) + 12.0 * (distance + search.longest_edge2().sqrt()));
     (2.0 * choice + EPSILON * distance) / scale
 }

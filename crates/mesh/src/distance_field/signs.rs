@@ -36,9 +36,12 @@ pub(super) fn negate_inside(
     monitor: &dyn Monitor,
 ) -> Result<(), DistanceFieldError> {
     let rows = RowCrossings::new(grid, bvh.frame());
-    let triangles = bvh.corners().par_chunks(TRIANGLES_AT_ONCE).zip(bvh.triangles().par_chunks(TRIANGLES_AT_ONCE));
-    triangles.try_for_each(|(corners, vertices)| {
-        corners.iter().zip(vertices).for_each(|(corners, vertices)| rows.add(corners, vertices));
+    mesh.triangles.par_chunks(TRIANGLES_AT_ONCE).try_for_each(|triangles| {
+        for triangle in triangles {
+            let [a, b, c] = *triangle;
+            let positions = bvh.positions();
+            rows.add(&[positions[a as usize], positions[b as usize], positions[c as usize]], triangle);
+        }
         if monitor.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     })?;
     if open_edges.is_empty() {

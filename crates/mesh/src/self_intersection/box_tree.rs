@@ -6,20 +6,13 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rdst::{RadixKey, RadixSort};
 
 use crate::bvh::UnitFrame;
 use crate::extremes::{greater, lesser};
+use crate::morton_order::along_morton_curve;
 
 /// Boxes that share a box of the next level.
 pub(super) const WIDTH: usize = 8;
-
-/// Triangles in the same cell of the curve's grid at most, before the cell gets a grid of its own. Larger leaves parts of the
-/// mesh that are much finer than the rest in no order; smaller spends time on order that eight triangles a box cannot use.
-const LARGEST_CELL: usize = 64;
-
-/// Bits of a cell's number along each axis.
-const BITS_PER_AXIS: u32 = 10;
 
 /// Eight boxes; those that are not there overlap nothing.
 ///
@@ -54,28 +47,14 @@ pub(super) struct NodePair {
     nodes: [u32; 2],
 }
 
-/// A triangle with the number of its cell.
-#[derive(Debug, Clone, Copy)]
-struct Placed {
-    cell: u32,
-    triangle: u32,
-}
-
-impl RadixKey for Placed {
-    const LEVELS: usize = 4;
-
-    fn get_level(&self, level: usize) -> u8 {
-        (self.cell >> (8 * level)) as u8
-    }
-}
-
 impl BoxTree {
     /// The hierarchy of the triangles over these finite points; there is at least one.
     pub(super) fn new(points: &[DVec3], triangles: &[[u32; 3]], frame: &UnitFrame) -> Self {
         let rounded: Vec<[f32; 3]> =
             points.par_iter().map(|&point| frame.inward(point).to_array().map(|x| x as f32)).collect();
         let box_of = |triangle: u32| OneBox::of(triangles[triangle as usize].map(|vertex| rounded[vertex as usize]));
-        let order = order_along_curve(triangles.len(), &box_of);
+        let order =
+            along_morton_curve(&rounded, triangles).into_iter().map(|placed| placed.triangle).collect::<Vec<_>>();
         let first =
             order.par_chunks(WIDTH).map(|eight| Boxes::of(eight.iter().map(|&triangle| box_of(triangle)))).collect();
         let mut levels: Vec<Vec<Boxes>> = vec![first];
@@ -212,11 +191,6 @@ impl OneBox {
         point(a).union(point(b)).union(point(c))
     }
 
-    fn center(&self) -> [f32; 3] {
-        let ([ax, ay, az], [bx, by, bz]) = (self.min, self.max);
-        [0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz)]
-    }
-
     #[inline(always)]
     fn union(self, other: Self) -> Self {
         let (a, b) = (self, other);
@@ -225,45 +199,4 @@ impl OneBox {
             max: [greater(a.max[0], b.max[0]), greater(a.max[1], b.max[1]), greater(a.max[2], b.max[2])],
         }
     }
-}
-
-/// Numbers of the triangles in the order of the curve through the centers of their boxes.
-fn order_along_curve(count: usize, box_of: &(impl Fn(u32) -> OneBox + Sync)) -> Vec<u32> {
-    let mut placed: Vec<Placed> =
-        (0..count as u32).into_par_iter().map(|triangle| Placed { cell: 0, triangle }).collect();
-    sort_along_curve(&mut placed, box_of);
-    placed.into_iter().map(|placed| placed.triangle).collect()
-}
-
-fn sort_along_curve(placed: &mut [Placed], box_of: &(impl Fn(u32) -> OneBox + Sync)) {
-    let center = |placed: &Placed| box_of(placed.triangle).center();
-    let bounds = (placed.par_iter())
-        .map(center)
-        .map(|point| OneBox { min: point, max: point })
-        .reduce_with(OneBox::union)
-        .unwrap_or(OneBox { min: [0.0; 3], max: [0.0; 3] });
-    let longest = [0, 1, 2].map(|axis| bounds.max[axis] - bounds.min[axis]).into_iter().fold(0.0, f32::max);
-    let cells = ((1 << BITS_PER_AXIS) - 1) as f32;
-    if !(longest > 0.0 && (cells / longest).is_finite()) {
-        // All centers are in one place; no order is better than another.
-        return;
-    }
-    let scale = cells / longest;
-    placed.par_iter_mut().for_each(|placed| {
-        let point = center(placed);
-        let cell = [0, 1, 2].map(|axis| spread(((point[axis] - bounds.min[axis]) * scale) as u32));
-        placed.cell = cell[0] | cell[1] << 1 | cell[2] << 2;
-    });
-    placed.radix_sort_unstable();
-    for cell in placed.chunk_by_mut(|a, b| a.cell == b.cell).filter(|cell| cell.len() > LARGEST_CELL) {
-        sort_along_curve(cell, box_of);
-    }
-}
-
-/// The ten lowest bits, two zeros between each and the next.
-fn spread(mut bits: u32) -> u32 {
-    bits = (bits | bits << 16) & 0x0300_00ff;
-    bits = (bits | bits << 8) & 0x0300_f00f;
-    bits = (bits | bits << 4) & 0x030c_30c3;
-    (bits | bits << 2) & 0x0924_9249
 }

@@ -1,0 +1,115 @@
+//! The nodes of a hierarchy: leaves along a space-filling curve, and above them what `obvhs` clusters.
+//!
+//! To cluster leaves of a few triangles each takes a fraction of what clustering triangles does, and gives boxes that are as good.
+
+use glam::{DVec3, Vec3A};
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::node::Bvh2Node;
+use obvhs::ploc::{PlocBuilder, SortPrecision};
+use rayon::prelude::*;
+
+use super::{LEAF_TRIANGLES, Node};
+use crate::morton_order::{Placed, along_morton_curve};
+
+/// Neighbors along the curve to each side that a cluster is compared with. Larger: slower. Smaller: boxes overlap more.
+const NEIGHBORS: usize = 6;
+
+/// Rounds of clustering that compare with only one neighbor, while there are most clusters.
+const QUICK_ROUNDS: usize = 2;
+
+/// The nodes over one triangle or more, in preorder with children beside each other, and the triangles in the order of the leaves.
+pub(super) fn nodes_and_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<Node>, Vec<u32>) {
+    let points: Vec<[f32; 3]> = positions.par_iter().map(|p| p.to_array().map(|x| x as f32)).collect();
+    let placed = along_morton_curve(&points, triangles);
+    let (leaves, bounds) = leaves(&placed, &points, triangles);
+
+    // The convenience functions around this one read the clock, which WebAssembly has not.
+    let mut builder = PlocBuilder::new();
+    builder.current_nodes = leaves;
+    let mut tree = Bvh2::default();
+    builder.build_ploc_from_leaves::<NEIGHBORS, false>(&mut tree, bounds, SortPrecision::U64, QUICK_ROUNDS);
+    in_preorder(&tree.nodes, &placed)
+}
+
+/// Cuts the curve into leaves, at the boundaries of its largest cells first; and the box around all of them.
+fn leaves(placed: &[Placed], points: &[[f32; 3]], triangles: &[[u32; 3]]) -> (Vec<Bvh2Node>, Aabb) {
+    let mut leaves = Vec::with_capacity(placed.len() / 2 + 1);
+    let mut bounds = Aabb::empty();
+    let mut pending = vec![(0, placed.len())];
+    while let Some((start, end)) = pending.pop() {
+        if end - start <= LEAF_TRIANGLES as usize {
+            let aabb = outward_box(&placed[start..end], points, triangles);
+            bounds = bounds.union(&aabb);
+            leaves.push(Bvh2Node::new(aabb, (end - start) as u32, start as u32));
+        } else {
+            let middle = cut(&placed[start..end]) + start;
+            pending.extend([(middle, end), (start, middle)]);
+        }
+    }
+    (leaves, bounds)
+}
+
+/// Where the first bit changes in which numbers of cells differ; in the middle where all are alike.
+fn cut(placed: &[Placed]) -> usize {
+    let (first, last) = (placed[0].cell, placed[placed.len() - 1].cell);
+    let middle = match (first ^ last).checked_ilog2() {
+        Some(bit) => placed.partition_point(|placed| placed.cell >> bit == first >> bit),
+        None => placed.len() / 2,
+    };
+    // Numbers within a cell that has a grid of its own are in no relation to those around it.
+    middle.clamp(1, placed.len() - 1)
+}
+
+/// The smallest box that holds these triangles as they were before their corners were rounded to nearest.
+fn outward_box(placed: &[Placed], points: &[[f32; 3]], triangles: &[[u32; 3]]) -> Aabb {
+    let mut aabb = Aabb::empty();
+    for placed in placed {
+        for vertex in triangles[placed.triangle as usize] {
+            aabb.extend(Vec3A::from_array(points[vertex as usize]));
+        }
+    }
+    aabb.min = Vec3A::from_array(aabb.min.to_array().map(f32::next_down));
+    aabb.max = Vec3A::from_array(aabb.max.to_array().map(f32::next_up));
+    aabb
+}
+
+/// The nodes of a clustering, which has its root first and children behind their parents, cut where [`LEAF_TRIANGLES`] remain.
+fn in_preorder(tree: &[Bvh2Node], placed: &[Placed]) -> (Vec<Node>, Vec<u32>) {
+    let mut below: Vec<u32> = tree.iter().map(|node| node.prim_count).collect();
+    for (index, node) in tree.iter().enumerate().rev() {
+        if !node.is_leaf() {
+            below[index] = below[node.first_index as usize] + below[node.first_index as usize + 1];
+        }
+    }
+    let node = |source: u32| {
+        let aabb = tree[source as usize].aabb();
+        Node { min: aabb.min.to_array(), max: aabb.max.to_array(), first: 0, count: below[source as usize] }
+    };
+    let mut order = Vec::with_capacity(placed.len());
+    let mut nodes = Vec::with_capacity(tree.len());
+    nodes.push(node(0));
+    let mut pending = vec![(0, 0)];
+    let mut leaf = Vec::new();
+    while let Some((source, place)) = pending.pop() {
+        let children = tree[source as usize].first_index;
+        if nodes[place].is_leaf() {
+            nodes[place].first = order.len() as u32;
+            leaf.push(source);
+            while let Some(part) = leaf.pop() {
+                let Bvh2Node { first_index: first, prim_count: count, .. } = tree[part as usize];
+                if count > 0 {
+                    order.extend(placed[first as usize..(first + count) as usize].iter().map(|placed| placed.triangle));
+                } else {
+                    leaf.extend([first + 1, first]);
+                }
+            }
+        } else {
+            let first = nodes.len();
+            nodes[place].first = first as u32;
+            nodes.extend([node(children), node(children + 1)]);
+            pending.extend([(children + 1, first + 1), (children, first)]);
+        }
+    }
+    (nodes, order)
+}
