@@ -12,6 +12,7 @@ pub struct CompensatedSum {
 
 impl CompensatedSum {
     /// Adds `value`.
+    #[inline(always)]
     pub fn add(&mut self, value: f64) {
         let sum = self.sum + value;
         // Exact rounding error of the addition, whichever operand is larger (Knuth's TwoSum).
@@ -38,11 +39,17 @@ const CHUNK: usize = 4096;
 /// Sums `N` series of `count` terms at once, in parallel, with the same bits for any number of threads.
 pub fn sum_terms<const N: usize>(count: usize, term: impl Fn(usize) -> [f64; N] + Sync) -> [f64; N] {
     let sum_chunk = |chunk: usize| {
-        let mut sums = [CompensatedSum::default(); N];
+        // Sums beside each other, and what they lost, so that registers take several of them.
+        let (mut sums, mut lost) = ([0.0; N], [0.0; N]);
         for index in chunk * CHUNK..((chunk + 1) * CHUNK).min(count) {
-            sums.iter_mut().zip(term(index)).for_each(|(sum, value)| sum.add(value));
+            let values = term(index);
+            for k in 0..N {
+                let mut sum = CompensatedSum { sum: sums[k], lost: lost[k] };
+                sum.add(values[k]);
+                (sums[k], lost[k]) = (sum.sum, sum.lost);
+            }
         }
-        sums
+        std::array::from_fn::<_, N, _>(|k| CompensatedSum { sum: sums[k], lost: lost[k] })
     };
     let chunks = count.div_ceil(CHUNK);
     let partial: Vec<_> = match chunks {

@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::bvh::checked_bounds;
+use crate::bvh::{Clustering, checked_bounds};
 use crate::mesh_distance::{open_edges, surface_centroid};
 use crate::{Aabb, Bvh, BvhError, Cancelled, Distance, DistanceBlock, Monitor, PointBlock, TriMesh};
 
@@ -153,6 +153,10 @@ pub struct DistanceField {
 /// the end of the band would count as distance.
 const KINK_CELLS: f64 = 2.0;
 
+/// Nodes of the grid for each triangle above which a better hierarchy is worth its time. Larger: slower searches of fine grids.
+/// Smaller: longer preparations for coarse ones.
+const NODES_A_TRIANGLE: usize = 4;
+
 /// Bytes a node takes while the field is built: sample, coefficient, winding number, and two copies in `f64` between the filters.
 const BYTES_PER_NODE: u64 = 4 + 4 + 4 + 2 * 8;
 
@@ -178,7 +182,9 @@ impl DistanceField {
         }
         let ((bvh, search), (open_edges, volume_and_centroid)) = rayon::join(
             || {
-                let bvh = Arc::new(Bvh::within(surface, &mesh.positions, &mesh.triangles));
+                let is_worth_it = grid.len() / NODES_A_TRIANGLE > mesh.triangles.len();
+                let clustering = if is_worth_it { Clustering::Fine } else { Clustering::Coarse };
+                let bvh = Arc::new(Bvh::within(surface, &mesh.positions, &mesh.triangles, clustering));
                 let search = PacketSearch::new(&bvh, &grid);
                 (bvh, search)
             },

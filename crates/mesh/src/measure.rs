@@ -62,7 +62,8 @@ impl TriMesh {
     pub(crate) fn volume_and_centroid(&self) -> (f64, DVec3) {
         let frame = Frame::of(&self.positions);
         let [six_volumes, x, y, z] = sum_terms(self.triangles.len(), |triangle| {
-            let [a, b, c] = self.corners(triangle).map(|corner| frame.local(corner));
+            let [a, b, c] = self.corners(triangle);
+            let (a, b, c) = (frame.local(a), frame.local(b), frame.local(c));
             let six_volume = a.dot(b.cross(c));
             let moment = (a + b + c) * six_volume;
             [six_volume, moment.x, moment.y, moment.z]

@@ -1,6 +1,4 @@
-//! The nodes of a hierarchy: leaves along a space-filling curve, and above them what `obvhs` clusters.
-//!
-//! To cluster leaves of a few triangles each takes a fraction of what clustering triangles does, and gives boxes that are as good.
+//! The nodes of a hierarchy: groups of triangles along a space-filling curve, and above them what `obvhs` clusters.
 
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
@@ -9,7 +7,7 @@ use obvhs::bvh2::node::Bvh2Node;
 use obvhs::ploc::{PlocBuilder, SortPrecision};
 use rayon::prelude::*;
 
-use super::{LEAF_TRIANGLES, Node};
+use super::Node;
 use crate::morton_order::{Placed, along_morton_curve};
 
 /// Neighbors along the curve to each side that a cluster is compared with. Larger: slower. Smaller: boxes overlap more.
@@ -19,10 +17,12 @@ const NEIGHBORS: usize = 6;
 const QUICK_ROUNDS: usize = 2;
 
 /// The nodes over one triangle or more, in preorder with children beside each other, and the triangles in the order of the leaves.
-pub(super) fn nodes_and_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<Node>, Vec<u32>) {
-    let points: Vec<[f32; 3]> = positions.par_iter().map(|p| p.to_array().map(|x| x as f32)).collect();
+///
+/// Up to `at_once` triangles that follow each other along the curve are clustered as one.
+pub(super) fn nodes_and_order(positions: &[DVec3], triangles: &[[u32; 3]], at_once: u32) -> (Vec<Node>, Vec<u32>) {
+    let points: Vec<[f32; 3]> = positions.par_iter().map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect();
     let placed = along_morton_curve(&points, triangles);
-    let (leaves, bounds) = leaves(&placed, &points, triangles);
+    let (leaves, bounds) = leaves(&placed, &points, triangles, at_once);
 
     // The convenience functions around this one read the clock, which WebAssembly has not.
     let mut builder = PlocBuilder::new();
@@ -33,12 +33,12 @@ pub(super) fn nodes_and_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> (V
 }
 
 /// Cuts the curve into leaves, at the boundaries of its largest cells first; and the box around all of them.
-fn leaves(placed: &[Placed], points: &[[f32; 3]], triangles: &[[u32; 3]]) -> (Vec<Bvh2Node>, Aabb) {
+fn leaves(placed: &[Placed], points: &[[f32; 3]], triangles: &[[u32; 3]], at_once: u32) -> (Vec<Bvh2Node>, Aabb) {
     let mut leaves = Vec::with_capacity(placed.len() / 2 + 1);
     let mut bounds = Aabb::empty();
     let mut pending = vec![(0, placed.len())];
     while let Some((start, end)) = pending.pop() {
-        if end - start <= LEAF_TRIANGLES as usize {
+        if end - start <= at_once as usize {
             let aabb = outward_box(&placed[start..end], points, triangles);
             bounds = bounds.union(&aabb);
             leaves.push(Bvh2Node::new(aabb, (end - start) as u32, start as u32));
@@ -69,12 +69,14 @@ fn outward_box(placed: &[Placed], points: &[[f32; 3]], triangles: &[[u32; 3]]) -
             aabb.extend(Vec3A::from_array(points[vertex as usize]));
         }
     }
-    aabb.min = Vec3A::from_array(aabb.min.to_array().map(f32::next_down));
-    aabb.max = Vec3A::from_array(aabb.max.to_array().map(f32::next_up));
+    let (min, max) = (aabb.min, aabb.max);
+    aabb.min = Vec3A::new(min.x.next_down(), min.y.next_down(), min.z.next_down());
+    aabb.max = Vec3A::new(max.x.next_up(), max.y.next_up(), max.z.next_up());
     aabb
 }
 
-/// The nodes of a clustering, which has its root first and children behind their parents, cut where [`LEAF_TRIANGLES`] remain.
+/// The nodes of a clustering, which has its root first and children behind their parents, cut where few enough triangles for a
+/// leaf remain.
 fn in_preorder(tree: &[Bvh2Node], placed: &[Placed]) -> (Vec<Node>, Vec<u32>) {
     let mut below: Vec<u32> = tree.iter().map(|node| node.prim_count).collect();
     for (index, node) in tree.iter().enumerate().rev() {

@@ -1,9 +1,6 @@
 use super::packet::{LANES, Packet};
-use super::vector::{Vector, cross, dot, minus, square};
+use super::vector::{Lanes3, at, cross, direction, dot, minus, perpendicular, select, square};
 use crate::extremes::{greater, lesser};
-
-/// Coordinates of a point in each lane.
-pub(super) type Lanes3 = [[f64; LANES]; 3];
 
 /// A triangle in its own plane: corners at (0, 0), (`base`, 0) and `left_length` · `left`.
 #[derive(Debug, Clone, Copy)]
@@ -52,8 +49,7 @@ impl FlatTriangle {
             let (along, length) = direction(minus(b, a), [1.0, 0.0, 0.0]);
             let to_apex = minus(c, a);
             let u = dot(along, to_apex);
-            let height = minus(to_apex, [along[0] * u, along[1] * u, along[2] * u]);
-            let (across, _) = direction(height, any_across(along));
+            let across = perpendicular(along, to_apex);
             let apex = [u, dot(across, to_apex), 0.0];
             // An edge without length may have any direction, but must have one.
             let (right, right_size) = direction([apex[0] - length, apex[1], 0.0], [1.0, 0.0, 0.0]);
@@ -134,36 +130,4 @@ impl FlatTriangle {
 #[inline(always)]
 fn clamp(x: f32, limit: f32) -> f32 {
     lesser(greater(x, 0.0), limit)
-}
-
-/// The point in a lane.
-#[inline(always)]
-pub(super) fn at(lanes: &Lanes3, lane: usize) -> Vector {
-    [lanes[0][lane], lanes[1][lane], lanes[2][lane]]
-}
-
-#[inline(always)]
-fn select(condition: bool, one: Vector, other: Vector) -> Vector {
-    [
-        if condition { one[0] } else { other[0] },
-        if condition { one[1] } else { other[1] },
-        if condition { one[2] } else { other[2] },
-    ]
-}
-
-/// The vector over its length, and that length; `or` in place of the direction of none.
-#[inline(always)]
-fn direction(vector: Vector, or: Vector) -> (Vector, f64) {
-    let length = square(vector).sqrt();
-    let scale = 1.0 / length;
-    let scaled = [vector[0] * scale, vector[1] * scale, vector[2] * scale];
-    (select(scale < f64::INFINITY, scaled, or), length)
-}
-
-/// A unit vector at right angles to this one. J. Duff et al., *Building an Orthonormal Basis, Revisited* (2017).
-#[inline(always)]
-fn any_across([x, y, z]: Vector) -> Vector {
-    let sign = if z < 0.0 { -1.0 } else { 1.0 };
-    let share = -1.0 / (sign + z);
-    [x * y * share, sign + y * y * share, -y]
 }

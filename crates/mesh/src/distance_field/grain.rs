@@ -1,12 +1,14 @@
 //! Triangles that are prepared for the search together, in vector registers: a small part of the hierarchy, with boxes along it.
 
-use glam::DVec3;
+use std::ops::Range;
+
+use glam::{DMat3, DVec3};
 use multiversion::multiversion;
 
-use super::flat_triangle::{FlatTriangle, Lanes3, at};
+use super::flat_triangle::FlatTriangle;
 use super::oriented_box::{OrientedBox, Shell};
 use super::packet::LANES;
-use super::vector::{cross, dot, minus, square};
+use super::vector::{Lanes3, at, cross, direction, dot, minus, perpendicular, select, square};
 use crate::Bvh;
 use crate::bvh::Node;
 use crate::extremes::{greater, lesser};
@@ -57,15 +59,28 @@ impl Grain {
     }
 }
 
-/// Extents along three axes, of each lane.
+/// Triangles in lanes, and how they lie along the axes of their leaf and along those of the grain.
+struct Lanes {
+    /// Axes of the leaf that a lane belongs to.
+    axes: [Lanes3; 3],
+    along_leaf: Extents,
+    along_grain: Extents,
+}
+
+/// Least and greatest coordinates along three axes.
 struct Extents {
     min: Lanes3,
     max: Lanes3,
 }
 
+/// Makes the triangles below a node, of which there are at most [`GRAIN`], and the boxes of all nodes below it; `slot` is that of the
+/// first triangle.
+///
+/// Leaves get boxes along their own triangles, the nodes above them along the whole grain.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
 pub(super) fn prepare(bvh: &Bvh, node: usize, slot: u32, place: &mut Place<'_>) -> Grain {
-    let count = bvh.nodes()[node].count as usize;
+    let nodes = bvh.nodes();
+    let count = nodes[node].count as usize;
     let mut corners = [[[0.0; LANES]; 3]; 3];
     for lane in 0..LANES {
         // Lanes without a triangle repeat the last one.
@@ -79,77 +94,148 @@ pub(super) fn prepare(bvh: &Bvh, node: usize, slot: u32, place: &mut Place<'_>) 
     let first = (slot - place.first_slot) as usize;
     FlatTriangle::set_each(&mut place.triangles[first..first + count], &corners);
 
-    let mut areas = [[0.0; LANES]; 3];
-    let mut centers = [[0.0; LANES]; 3];
+    let [mut areas, mut sums, mut edges] = [[[0.0; LANES]; 3]; 3];
     let mut longest2 = [0.0; LANES];
     for i in 0..LANES {
         let (a, b, c) = (at(&corners[0], i), at(&corners[1], i), at(&corners[2], i));
-        let area = cross(minus(b, a), minus(c, a));
+        let (ab, bc, ca) = (minus(b, a), minus(c, b), minus(a, c));
+        let area = cross(ab, bc);
+        let edge = select(square(ab) > square(bc), ab, bc);
+        let edge = select(square(edge) > square(ca), edge, ca);
         for axis in 0..3 {
             areas[axis][i] = area[axis];
-            centers[axis][i] = a[axis] + b[axis] + c[axis];
+            sums[axis][i] = a[axis] + b[axis] + c[axis];
+            edges[axis][i] = edge[axis];
         }
-        longest2[i] = greater(square(minus(b, a)), greater(square(minus(c, b)), square(minus(a, c))));
+        longest2[i] = square(edge);
     }
-    let (mut normal, mut center) = (DVec3::ZERO, DVec3::ZERO);
-    for lane in 0..count {
-        let area = DVec3::from_array(at(&areas, lane));
-        normal += turned_along(normal, area);
-        center += DVec3::from_array(at(&centers, lane));
-    }
-    center /= 3.0 * count as f64;
-    // A corner far from the center tells the direction in which the grain is long.
-    let mut far = (0.0, DVec3::ZERO);
-    for lane in 0..count {
-        let offset = DVec3::from_array(at(&corners[0], lane)) - center;
-        if offset.length_squared() > far.0 {
-            far = (offset.length_squared(), offset);
+    let vector = |lanes: &Lanes3, lane: usize| DVec3::from_array(at(lanes, lane));
+    let (mut normal, mut sum) = (DVec3::ZERO, DVec3::ZERO);
+    let half = if nodes[node].is_leaf() { 0 } else { nodes[nodes[node].first as usize].count as usize };
+    let mut sum_of_half = DVec3::ZERO;
+    let [mut normals, mut tangents] = [[[0.0; LANES]; 3]; 2];
+    let mut longest = 0;
+    let mut first = 0;
+    for_leaves(bvh, node, &mut |leaf: &Node| {
+        let lanes = first..first + leaf.count as usize;
+        first = lanes.end;
+        if lanes.start == half {
+            sum_of_half = sum;
         }
-    }
-    let shell = Shell::across_and_along(normal, far.1);
+        let (mut across, mut long) = (DVec3::ZERO, lanes.start);
+        for lane in lanes.clone() {
+            across += turned_along(across, vector(&areas, lane));
+            sum += vector(&sums, lane);
+            long = if longest2[lane] > longest2[long] { lane } else { long };
+        }
+        normal += turned_along(normal, across);
+        longest = if longest2[long] > longest2[longest] { long } else { longest };
+        for axis in 0..3 {
+            normals[axis][lanes.clone()].fill(across[axis]);
+            tangents[axis][lanes.clone()].fill(edges[axis][long]);
+        }
+    });
+    let center = sum / (3.0 * count as f64);
+    // A node is long from one child to the other; a leaf has axes of its own.
+    let tangent = if half > 0 { center - sum_of_half / (3.0 * half as f64) } else { DVec3::ZERO };
+    let shell = Shell::across_and_along(normal, tangent);
 
-    let mut extents = Extents { min: [[0.0; LANES]; 3], max: [[0.0; LANES]; 3] };
-    for axis in 0..3 {
-        let direction = shell.axes.col(axis).to_array();
-        for i in 0..LANES {
-            let a = dot(at(&corners[0], i), direction);
-            let b = dot(at(&corners[1], i), direction);
-            let c = dot(at(&corners[2], i), direction);
-            extents.min[axis][i] = lesser(a, lesser(b, c));
-            extents.max[axis][i] = greater(a, greater(b, c));
+    let mut axes = [[[0.0; LANES]; 3]; 3];
+    for i in 0..LANES {
+        let (across, _) = direction(at(&normals, i), [1.0, 0.0, 0.0]);
+        let along = perpendicular(across, at(&tangents, i));
+        let third = cross(across, along);
+        for axis in 0..3 {
+            axes[0][axis][i] = across[axis];
+            axes[1][axis][i] = along[axis];
+            axes[2][axis][i] = third[axis];
         }
     }
-    let shell = boxes_below(bvh, node, &mut 0, shell, &extents, place);
-    let longest2 = longest2.into_iter().fold(0.0, greater);
-    Grain { count: count as u32, center, normal, shell, longest2 }
+    let along_leaf = Extents::of(&corners, &axes);
+    let of_grain = [0, 1, 2].map(|axis| shell.axes.col(axis).to_array().map(|x| [x; LANES]));
+    let lanes = Lanes { axes, along_leaf, along_grain: Extents::of(&corners, &of_grain) };
+    let mut grain = Grain { count: count as u32, center, normal, shell, longest2: longest2[longest] };
+    if nodes[node].is_leaf() {
+        grain.shell = lanes.leaf(0, count);
+    } else {
+        (grain.shell.min, grain.shell.max) = lanes.boxes_below(bvh, node, &mut 0, &shell, place);
+    }
+    grain
 }
 
-/// The shell of a node, after the boxes of the nodes below it; `empty` has the axes.
-fn boxes_below(
-    bvh: &Bvh,
-    node: usize,
-    lane: &mut usize,
-    empty: Shell,
-    extents: &Extents,
-    place: &mut Place<'_>,
-) -> Shell {
-    let mut shell = empty;
-    let Node { first, count, .. } = bvh.nodes()[node];
-    if bvh.nodes()[node].is_leaf() {
-        for lane in *lane..*lane + count as usize {
-            shell.min = shell.min.min(DVec3::from_array(at(&extents.min, lane)));
-            shell.max = shell.max.max(DVec3::from_array(at(&extents.max, lane)));
+/// Visits the leaves below a node in order.
+fn for_leaves(bvh: &Bvh, node: usize, visit: &mut impl FnMut(&Node)) {
+    let node = &bvh.nodes()[node];
+    if node.is_leaf() {
+        visit(node);
+    } else {
+        for_leaves(bvh, node.first as usize, visit);
+        for_leaves(bvh, node.first as usize + 1, visit);
+    }
+}
+
+impl Extents {
+    #[inline(always)]
+    fn of(corners: &[Lanes3; 3], axes: &[Lanes3; 3]) -> Self {
+        let mut extents = Self { min: [[0.0; LANES]; 3], max: [[0.0; LANES]; 3] };
+        for axis in 0..3 {
+            for i in 0..LANES {
+                let direction = at(&axes[axis], i);
+                let a = dot(at(&corners[0], i), direction);
+                let b = dot(at(&corners[1], i), direction);
+                let c = dot(at(&corners[2], i), direction);
+                extents.min[axis][i] = lesser(a, lesser(b, c));
+                extents.max[axis][i] = greater(a, greater(b, c));
+            }
         }
-        *lane += count as usize;
-        return shell;
+        extents
     }
-    for child in [first as usize, first as usize + 1] {
-        let below = boxes_below(bvh, child, lane, empty, extents, place);
-        place.boxes[child - place.first_box] = below.rounded(place.rounding, &bvh.nodes()[child]);
-        shell.min = shell.min.min(below.min);
-        shell.max = shell.max.max(below.max);
+
+    /// Of some lanes together.
+    fn joined(&self, lanes: Range<usize>) -> (DVec3, DVec3) {
+        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for lane in lanes {
+            min = min.min(DVec3::from_array(at(&self.min, lane)));
+            max = max.max(DVec3::from_array(at(&self.max, lane)));
+        }
+        (min, max)
     }
-    shell
+}
+
+impl Lanes {
+    /// Extents of a node along the axes of the grain, after the boxes of the nodes below it.
+    fn boxes_below(
+        &self,
+        bvh: &Bvh,
+        node: usize,
+        lane: &mut usize,
+        grain: &Shell,
+        place: &mut Place<'_>,
+    ) -> (DVec3, DVec3) {
+        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let children = bvh.nodes()[node].first as usize;
+        for child in [children, children + 1] {
+            let node = &bvh.nodes()[child];
+            let (own, (child_min, child_max)) = if node.is_leaf() {
+                let (first, count) = (*lane, node.count as usize);
+                *lane += count;
+                (self.leaf(first, count), self.along_grain.joined(first..first + count))
+            } else {
+                let (min, max) = self.boxes_below(bvh, child, lane, grain, place);
+                (Shell { axes: grain.axes, min, max }, (min, max))
+            };
+            place.boxes[child - place.first_box] = own.rounded(place.rounding, node);
+            (min, max) = (min.min(child_min), max.max(child_max));
+        }
+        (min, max)
+    }
+
+    /// The shell of the leaf in these lanes.
+    fn leaf(&self, first: usize, count: usize) -> Shell {
+        let axes = [0, 1, 2].map(|axis| DVec3::from_array(at(&self.axes[axis], first)));
+        let (min, max) = self.along_leaf.joined(first..first + count);
+        Shell { axes: DMat3::from_cols(axes[0], axes[1], axes[2]), min, max }
+    }
 }
 
 /// `vector`, or its opposite if that is the one to the same side as `side`.

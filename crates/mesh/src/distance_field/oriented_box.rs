@@ -8,6 +8,7 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 
 use super::packet::{LANES, Lanes, Packet};
+use super::vector::{cross, direction, perpendicular};
 use crate::bvh::{LEAF_TRIANGLES, Node};
 use crate::extremes::greater;
 
@@ -69,10 +70,9 @@ pub(super) struct Shell {
 impl Shell {
     /// Holds nothing yet; the first of its axes is across a piece of the surface, the second along it.
     pub(super) fn across_and_along(normal: DVec3, tangent: DVec3) -> Self {
-        let normal = normal.try_normalize().unwrap_or(DVec3::X);
-        let tangent = tangent - normal * normal.dot(tangent);
-        let tangent = tangent.try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
-        let axes = DMat3::from_cols(normal, tangent, normal.cross(tangent));
+        let (across, _) = direction(normal.to_array(), [1.0, 0.0, 0.0]);
+        let along = perpendicular(across, tangent.to_array());
+        let axes = DMat3::from_cols_array_2d(&[across, along, cross(across, along)]);
         Self { axes, min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }
     }
 
@@ -90,7 +90,7 @@ impl Shell {
 
     /// A box around it, grown by `rounding`, for this node.
     pub(super) fn rounded(&self, rounding: f64, node: &Node) -> OrientedBox {
-        let f = |v: DVec3| v.to_array().map(|x| x as f32);
+        let f = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
         OrientedBox {
             axes: [f(self.axes.x_axis), f(self.axes.y_axis), f(self.axes.z_axis)],
             middle: f(0.5 * (self.min + self.max)),

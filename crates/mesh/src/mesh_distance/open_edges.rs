@@ -8,36 +8,56 @@
 pub(crate) fn open_edges(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2]> {
     let directed =
         || (triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])).filter(|[from, to]| from != to);
-    // Edges in buckets by their smaller vertex.
-    let mut ends = vec![0_u32; vertices];
+    // The larger ends of edges in buckets by their smaller vertex: forward ones from the front, backward ones from the back.
+    let mut starts = vec![0_u32; vertices + 1];
     for [from, to] in directed() {
-        ends[from.min(to) as usize] += 1;
+        starts[from.min(to) as usize + 1] += 1;
     }
-    let mut start = 0;
-    for end in &mut ends {
-        (*end, start) = (start, start + *end);
+    for vertex in 0..vertices {
+        starts[vertex + 1] += starts[vertex];
     }
-    let mut bucketed = vec![(0, false); start as usize];
+    let (mut fronts, mut backs) = (starts[..vertices].to_vec(), starts[1..].to_vec());
+    let mut bucketed = vec![0; starts[vertices] as usize];
     for [from, to] in directed() {
-        let end = &mut ends[from.min(to) as usize];
-        bucketed[*end as usize] = (from.max(to), from < to);
-        *end += 1;
+        if from < to {
+            let front = &mut fronts[from as usize];
+            bucketed[*front as usize] = to;
+            *front += 1;
+        } else {
+            let back = &mut backs[to as usize];
+            *back -= 1;
+            bucketed[*back as usize] = from;
+        }
     }
     let mut open = Vec::new();
-    let mut start = 0;
-    for (smaller, &end) in ends.iter().enumerate() {
-        let bucket = &mut bucketed[start..end as usize];
-        start = end as usize;
-        bucket.sort_unstable();
-        for uses in bucket.chunk_by(|one, other| one.0 == other.0) {
-            let (smaller, larger) = (smaller as u32, uses[0].0);
-            let forward = uses.iter().filter(|(_, is_forward)| *is_forward).count();
-            let backward = uses.len() - forward;
-            open.extend(std::iter::repeat_n([smaller, larger], forward.saturating_sub(backward)));
-            open.extend(std::iter::repeat_n([larger, smaller], backward.saturating_sub(forward)));
+    for (vertex, &middle) in fronts.iter().enumerate() {
+        let (start, end) = (starts[vertex] as usize, starts[vertex + 1] as usize);
+        let (forward, backward) = bucketed[start..end].split_at_mut(middle as usize - start);
+        forward.sort_unstable();
+        backward.sort_unstable();
+        if forward != backward {
+            push_unpaired(&mut open, vertex as u32, forward, backward);
         }
     }
     open
+}
+
+/// The edges between a vertex and larger ones, given in ascending order, that have no opposite.
+fn push_unpaired(open: &mut Vec<[u32; 2]>, vertex: u32, mut forward: &[u32], mut backward: &[u32]) {
+    loop {
+        match (forward.first(), backward.first()) {
+            (Some(to), Some(from)) if to == from => (forward, backward) = (&forward[1..], &backward[1..]),
+            (Some(&to), from) if from.is_none_or(|&from| to < from) => {
+                open.push([vertex, to]);
+                forward = &forward[1..];
+            }
+            (_, Some(&from)) => {
+                open.push([from, vertex]);
+                backward = &backward[1..];
+            }
+            (_, None) => break,
+        }
+    }
 }
 
 #[cfg(test)]

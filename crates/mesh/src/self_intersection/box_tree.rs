@@ -50,9 +50,17 @@ pub(super) struct NodePair {
 impl BoxTree {
     /// The hierarchy of the triangles over these finite points; there is at least one.
     pub(super) fn new(points: &[DVec3], triangles: &[[u32; 3]], frame: &UnitFrame) -> Self {
-        let rounded: Vec<[f32; 3]> =
-            points.par_iter().map(|&point| frame.inward(point).to_array().map(|x| x as f32)).collect();
-        let box_of = |triangle: u32| OneBox::of(triangles[triangle as usize].map(|vertex| rounded[vertex as usize]));
+        let rounded: Vec<[f32; 3]> = points
+            .par_iter()
+            .map(|&point| {
+                let point = frame.inward(point);
+                [point.x as f32, point.y as f32, point.z as f32]
+            })
+            .collect();
+        let box_of = |triangle: u32| {
+            let [a, b, c] = triangles[triangle as usize];
+            OneBox::of([rounded[a as usize], rounded[b as usize], rounded[c as usize]])
+        };
         let order =
             along_morton_curve(&rounded, triangles).into_iter().map(|placed| placed.triangle).collect::<Vec<_>>();
         let first =
