@@ -75,16 +75,20 @@ def deform(target, recipe):
         raise ValueError("the object is scaled to nothing along some axis")
     surface = Surface(target, mirrored=np.linalg.det(to_world[:3, :3]) < 0)
     world = surface.positions @ to_world[:3, :3].T + to_world[:3, 3]
-    sent = isochore.Mesh(world, surface.triangles, uvs=surface.uvs())
+    normals = surface.normals()
+    if normals is not None:
+        normals = normals @ np.linalg.inv(to_world[:3, :3])
+    sent = isochore.Mesh(world, surface.triangles, uvs=surface.uvs(), normals=normals)
     mesh, _, report = isochore.run(recipe, meshes={TARGET: sent}, settings={"target.mesh": TARGET})
     local = (mesh.positions - to_world[:3, 3]) @ np.linalg.inv(to_world[:3, :3]).T
     # What did not move keeps its bits, which the way to the world and back would not.
     still = np.all(mesh.positions[: len(world)] == world, axis=1)
     local[: len(world)][still] = surface.positions[still]
-    if np.array_equal(mesh.triangles, surface.triangles):
-        surface.move(local)
-        return report, []
-    return report, surface.replace(local, mesh.triangles, mesh.uvs)
+    is_same = np.array_equal(mesh.triangles, surface.triangles)
+    lost = surface.move(local) if is_same else surface.replace(local, mesh.triangles, mesh.uvs)
+    if normals is not None:
+        surface.set_normals(mesh.normals @ to_world[:3, :3])
+    return report, lost
 
 
 def draw_menu(menu, context):

@@ -44,10 +44,21 @@ class Surface:
         numbers = np.repeat(np.arange(len(self.triangles), dtype=float), 6).reshape(-1, 3, 2)
         return [corners, numbers]
 
+    def normals(self):
+        """Custom normals by corner, (triangles, 3, 3); None where the mesh has none."""
+        return read(self.mesh.corner_normals, "vector", 3, np.float32)[self.loops] if self.mesh.has_custom_normals else None
+
+    def set_normals(self, normals):
+        """Gives the corners of the triangles, which `replace` may have made anew, custom normals of any length."""
+        by_loop = np.zeros((len(self.mesh.loops), 3))
+        by_loop[self.loops] = normals / np.linalg.norm(normals, axis=2, keepdims=True)
+        self.mesh.normals_split_custom_set(by_loop.tolist())
+
     def move(self, positions):
-        """Moves the vertices and keeps the polygons."""
+        """Moves the vertices and keeps the polygons. Returns what was lost, as `replace` does: nothing."""
         self.mesh.vertices.foreach_set("co", positions.astype(np.float32).ravel())
         self.mesh.update()
+        return []
 
     def replace(self, positions, triangles, uvs):
         """Puts refined triangles, with the sets of `uvs` that came of ours, in place of the polygons. Returns what was lost."""
@@ -90,6 +101,7 @@ class Surface:
         if colors:
             colors.active_color_index, colors.render_color_index = shown_colors
         self.mesh.update()
+        self.loops = np.arange(triangles.size).reshape(-1, 3)[:, :: self.order]
         return lost
 
     def _rebuild(self, positions, triangles):
@@ -104,8 +116,12 @@ class Surface:
         mesh.update(calc_edges=True)
 
     def _attributes(self):
-        """Names, types, domains and values of all attributes but the topology and the selection, and the names of others."""
-        named = [a for a in self.mesh.attributes if not a.name.startswith(".") and a.name != "position"]
+        """Names, types, domains and values of all attributes but the topology and the selection, and the names of others.
+
+        Custom normals are stored relative to the surface, so they are given anew instead.
+        """
+        apart = ["position", "custom_normal"]
+        named = [a for a in self.mesh.attributes if not a.name.startswith(".") and a.name not in apart]
         lost = [a.name for a in named if a.data_type not in FIELDS]
         kept = [a for a in named if a.data_type in FIELDS]
         return [(a.name, a.data_type, a.domain, read(a.data, *FIELDS[a.data_type])) for a in kept], lost
