@@ -1,14 +1,27 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol, Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Progress = Callable[[str, float], object]
+__all__ = [
+    "Cancelled",
+    "DistanceField",
+    "Error",
+    "Mesh",
+    "RecipeError",
+    "Result",
+    "Session",
+    "Tool",
+    "run",
+    "run_points",
+]
+
+_Progress = Callable[[str, float], object]
 """Called on the calling thread every 50 ms with the stage at work and its share done, 0 to 1; returning False stops the work."""
 
-class HasVerticesAndFaces(Protocol):
+class _HasVerticesAndFaces(Protocol):
     """A mesh of another library, such as `trimesh.Trimesh`."""
 
     vertices: Any
@@ -28,11 +41,12 @@ class RecipeError(Error):
 class Cancelled(Error):
     """The `progress` function asked to stop."""
 
+@final
 class Mesh:
     """A triangle mesh. It never changes: its arrays are read-only views, which keep it alive."""
 
-    def __init__(
-        self,
+    def __new__(
+        cls,
         positions: ArrayLike,
         triangles: ArrayLike,
         *,
@@ -40,7 +54,7 @@ class Mesh:
         normals: ArrayLike | None = None,
         colors: ArrayLike | None = None,
         skin: tuple[ArrayLike, ArrayLike] | None = None,
-    ) -> None:
+    ) -> Self:
         """Copies the arrays.
 
         positions: (V, 3) numbers, model units. triangles: (T, 3) integers, counter-clockwise seen from outside.
@@ -58,7 +72,7 @@ class Mesh:
         """Reads the bytes of a mesh file; `format` is its extension."""
 
     @classmethod
-    def from_trimesh(cls, mesh: HasVerticesAndFaces) -> Mesh:
+    def from_trimesh(cls, mesh: _HasVerticesAndFaces) -> Mesh:
         """The vertices and faces of a `trimesh.Trimesh` or the like."""
 
     def to_trimesh(self) -> Any:
@@ -110,21 +124,22 @@ class Mesh:
     def is_closed(self) -> bool:
         """Whether every edge lies between two triangles that agree on which side is outside."""
 
-    def self_intersections(self, *, progress: Progress | None = None) -> NDArray[np.uint32]:
+    def self_intersections(self, *, progress: _Progress | None = None) -> NDArray[np.uint32]:
         """Indices of the triangles that intersect others, by exact arithmetic, in ascending order."""
 
+@final
 class DistanceField:
     """Signed distances to a mesh on a grid, negative inside, and the cubic spline through them."""
 
-    def __init__(
-        self,
-        mesh: Mesh | HasVerticesAndFaces,
+    def __new__(
+        cls,
+        mesh: Mesh | _HasVerticesAndFaces,
         resolution: int = 64,
         *,
         padding: float | None = None,
         band: float = ...,
-        progress: Progress | None = None,
-    ) -> None:
+        progress: _Progress | None = None,
+    ) -> Self:
         """Samples the distance to `mesh`.
 
         resolution: cells on the longest side of the mesh. padding: model units around it, by default eight cells.
@@ -154,17 +169,18 @@ class DistanceField:
         Beyond the grid the distance is infinite and the gradient zero.
         """
 
+@final
 class Tool:
     """A tool ready to work, made once and shared between strokes and sessions."""
 
-    def __init__(
-        self,
+    def __new__(
+        cls,
         description: Mapping[str, Any],
         *,
         name: str = "tool",
-        mesh: Mesh | HasVerticesAndFaces | None = None,
-        progress: Progress | None = None,
-    ) -> None:
+        mesh: Mesh | _HasVerticesAndFaces | None = None,
+        progress: _Progress | None = None,
+    ) -> Self:
         """Makes a tool from what a recipe says of one: {"shape": {"kind": "sphere", "radius": 0.1}, "support": 0.1}.
 
         name: what the log calls it. mesh: the mesh of a shape of the kind "mesh", whose distance is sampled now.
@@ -176,6 +192,7 @@ class Tool:
     def warnings(self) -> list[str]:
         """What there is to know about how the description was understood."""
 
+@final
 class Session:
     """A mesh that strokes deform one after the other, at the pace of a frame, with undo and redo.
 
@@ -187,15 +204,15 @@ class Session:
     not change: strokes, undo and redo raise BufferError until it is dropped.
     """
 
-    def __init__(
-        self,
-        mesh: Mesh | HasVerticesAndFaces,
+    def __new__(
+        cls,
+        mesh: Mesh | _HasVerticesAndFaces,
         *,
         step: float | None = None,
         undo_bytes: int | None = None,
         normals: Literal["area", "angle"] = "area",
         mask: ArrayLike | Mapping[str, Any] | None = None,
-    ) -> None:
+    ) -> Self:
         """Opens a session on a manifold, oriented mesh.
 
         step: travel of the tool in one time step, as `integrate.step` of a recipe. undo_bytes: what undo and redo may hold; beyond, the
@@ -325,9 +342,9 @@ class Result(NamedTuple):
 def run(
     recipe: str | PathLike[str] | Mapping[str, Any],
     *,
-    meshes: Mapping[str, Mesh | HasVerticesAndFaces] | None = None,
+    meshes: Mapping[str, Mesh | _HasVerticesAndFaces] | None = None,
     settings: Mapping[str, Any] | Iterable[str] = (),
-    progress: Progress | None = None,
+    progress: _Progress | None = None,
 ) -> Result:
     """Deforms the target of a recipe, as `isochore run` does, and writes no file.
 
@@ -342,9 +359,9 @@ def run_points(
     recipe: str | PathLike[str] | Mapping[str, Any],
     points: ArrayLike,
     *,
-    meshes: Mapping[str, Mesh | HasVerticesAndFaces] | None = None,
+    meshes: Mapping[str, Mesh | _HasVerticesAndFaces] | None = None,
     settings: Mapping[str, Any] | Iterable[str] = (),
-    progress: Progress | None = None,
+    progress: _Progress | None = None,
 ) -> tuple[NDArray[np.float64], list[str]]:
     """Carries points (N, 3), model units, along the strokes of a recipe: where they come to, (N, 3), and warnings.
 
