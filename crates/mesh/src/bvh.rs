@@ -30,9 +30,9 @@ const TRIANGLES_AT_ONCE: usize = 1 << 14;
 /// How many triangles at once are taken for one when the hierarchy is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Clustering {
-    /// Every triangle on its own: for many searches, each of which takes a tenth less.
+    /// Every triangle on its own: for many searches, which then look at less.
     Fine = 1,
-    /// As many as a leaf may hold: for few searches, since it takes two thirds of the time.
+    /// As many as a leaf may hold: for few searches, since clustering takes a fraction of the time.
     Coarse = LEAF_TRIANGLES as isize,
 }
 

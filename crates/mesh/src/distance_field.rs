@@ -54,7 +54,7 @@ pub struct DistanceFieldOptions {
     /// distance, and cost nearly nothing. Infinite for all.
     pub band: f64,
     /// Bytes that the grid may take at most while it is built, estimated before any is taken: 28 a node. The hierarchy of the mesh
-    /// takes about 260 bytes a triangle besides, until the field is built.
+    /// takes about 180 bytes a triangle besides, until the field is built.
     pub memory_limit: u64,
 }
 
