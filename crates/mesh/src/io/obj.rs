@@ -1,10 +1,11 @@
 //! Wavefront OBJ.
 //!
-//! Read in one pass, each byte about once: a statement ends at its line, a number where its last digit does. Corners keep
-//! the file's numbers until all vertices are known, because faces may come before them.
+//! Read by the library `tobj`, which gets the statements that bear on the surface. What it does not keep is seen to here: the
+//! order of the vertices and those that no face uses, colors of some vertices only, materials without a library, corners
+//! without attributes, and the line of an error.
 
-mod contents;
-mod corner;
+mod fault;
+mod lines;
 mod reader;
 mod statement;
 mod writer;

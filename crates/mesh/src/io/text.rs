@@ -128,6 +128,21 @@ pub(super) fn flush(bytes: &mut Vec<u8>, writer: &mut dyn Write, most: usize) ->
     Ok(())
 }
 
+/// Writes a whole number in decimal.
+pub(super) fn push_index(bytes: &mut Vec<u8>, mut index: u32) {
+    let mut digits = [0; 10];
+    let mut start = digits.len();
+    loop {
+        start -= 1;
+        digits[start] = b'0' + (index % 10) as u8;
+        index /= 10;
+        if index == 0 {
+            break;
+        }
+    }
+    bytes.extend_from_slice(&digits[start..]);
+}
+
 /// Lines of words on their way to a writer.
 pub(super) struct LineWriter<'a> {
     writer: &'a mut dyn Write,
@@ -158,18 +173,8 @@ impl<'a> LineWriter<'a> {
         }
     }
 
-    pub(super) fn push_index(&mut self, mut index: u32) {
-        let mut digits = [0; 10];
-        let mut start = digits.len();
-        loop {
-            start -= 1;
-            digits[start] = b'0' + (index % 10) as u8;
-            index /= 10;
-            if index == 0 {
-                break;
-            }
-        }
-        self.buffer.extend_from_slice(&digits[start..]);
+    pub(super) fn push_index(&mut self, index: u32) {
+        push_index(&mut self.buffer, index);
     }
 
     pub(super) fn end_line(&mut self) -> io::Result<()> {

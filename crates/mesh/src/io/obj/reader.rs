@@ -1,80 +1,177 @@
 //! Reading OBJ.
 
-use glam::DVec2;
+use std::io::{BufRead, Read};
+use std::iter::repeat_n;
+use std::path::Path;
 
-use super::contents::Contents;
+use glam::{DVec2, DVec3, DVec4};
+
+use super::fault::check_lines;
+use super::lines::{Kept, Lines, split_vertex};
+use super::statement::Statements;
 use crate::TriMesh;
 use crate::io::ParseError;
 use crate::io::polygon::triangulate;
+use crate::io::text::push_index;
 use crate::measure::triangle_normal;
+
+/// Faces that make an object for the library, whose tables then fit into a cache. Much larger, and they do not; much smaller,
+/// and vertices are repeated in many objects.
+const OBJECT_SIZE: usize = 1 << 13;
 
 /// Reads OBJ: `v` with optional color, `vt`, `vn`, `f`, `usemtl` and `mtllib`; other statements are passed over.
 ///
 /// Faces may refer to vertices that come later. Vertices keep their order, used or not, except that those which the file
 /// splits along seams are welded.
 pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
-    Ok(into_mesh(Contents::of(bytes)?).welded_at_boundary())
+    // What comes after the faces that name it is there only once the whole file is read, as one object.
+    let read = read_objects(bytes, OBJECT_SIZE).or_else(|_| read_objects(bytes, usize::MAX));
+    match read {
+        Ok(mesh) => Ok(mesh.welded_at_boundary()),
+        Err(problem) => {
+            check_lines(bytes)?;
+            Err(ParseError::Malformed(problem.to_string()))
+        }
+    }
 }
 
-fn into_mesh(contents: Contents) -> TriMesh {
-    let Contents { positions, uvs, normals, runs, corner_vertices, corner_uvs, corner_normals, .. } = contents;
+fn read_objects(bytes: &[u8], object_size: usize) -> Result<TriMesh, tobj::LoadError> {
+    let mut lines = Lines::new(bytes, object_size);
+    let objects = load(&mut lines)?;
+    let mut kept = lines.kept;
+    if !kept.colors.is_empty() {
+        kept.colors.resize(kept.counts[0], DVec4::ONE);
+    }
+    let positions = positions(bytes, &objects, kept.counts[0])?;
+    if !is_sound(&objects, &positions) || (kept.has_uneven_faces && check_lines(bytes).is_err()) {
+        return Err(tobj::LoadError::GenericFailure);
+    }
+    into_mesh(positions, &objects, kept).ok_or(tobj::LoadError::GenericFailure)
+}
+
+fn load(lines: &mut impl BufRead) -> Result<Vec<tobj::Mesh>, tobj::LoadError> {
+    let no_materials = |_: &Path| Ok(Default::default());
+    let (models, _) = tobj::load_obj_buf(lines, &tobj::LoadOptions::default(), no_materials)?;
+    Ok(models.into_iter().map(|model| model.mesh).collect())
+}
+
+/// The numbers in the file of an object's vertices.
+fn numbers(object: &tobj::Mesh) -> impl Iterator<Item = u32> {
+    object.vertex_color.as_chunks::<3>().0.iter().map(|color| color[0] as u32)
+}
+
+/// All positions in the order of the file.
+fn positions(bytes: &[u8], objects: &[tobj::Mesh], count: usize) -> Result<Vec<DVec3>, tobj::LoadError> {
+    let mut positions = vec![DVec3::NAN; count];
+    for object in objects {
+        for (number, &position) in numbers(object).zip(object.positions.as_chunks().0) {
+            positions[number as usize] = DVec3::from_array(position);
+        }
+    }
+    let is_missing = |&vertex: &u32| positions[vertex as usize].is_nan();
+    let missing: Vec<u32> = (0..count as u32).filter(is_missing).collect();
+    if !missing.is_empty() {
+        let found = positions_of(&missing, bytes)?;
+        missing.iter().zip(found).for_each(|(&vertex, position)| positions[vertex as usize] = position);
+    }
+    Ok(positions)
+}
+
+/// The positions of vertices that no face names, which the library leaves out: all are made one face for it.
+fn positions_of(vertices: &[u32], bytes: &[u8]) -> Result<Vec<DVec3>, tobj::LoadError> {
+    let (mut lines, mut face) = (Vec::new(), b"f".to_vec());
+    let mut wanted = vertices.iter().zip(1..).peekable();
+    let statements = Statements::of(bytes).filter(|statement| statement.keyword() == b"v");
+    for (statement, vertex) in statements.zip(0..) {
+        if let Some((_, index)) = wanted.next_if(|&(&wanted, _)| wanted == vertex) {
+            let plain = statement.plain();
+            let (position, _) = split_vertex(&plain).map_err(|_| tobj::LoadError::PositionParseError)?;
+            lines.extend_from_slice(position);
+            lines.push(b'\n');
+            face.push(b' ');
+            push_index(&mut face, index);
+        }
+    }
+    let objects = load(&mut (&lines[..]).chain(&face[..]))?;
+    let positions = objects.iter().flat_map(|object| object.positions.as_chunks().0);
+    Ok(positions.copied().map(DVec3::from_array).collect())
+}
+
+/// False where the library lets pass what the format forbids.
+fn is_sound(objects: &[tobj::Mesh], positions: &[DVec3]) -> bool {
+    let is_finite =
+        |object: &tobj::Mesh| object.texcoords.iter().chain(&object.normals).all(|number| number.is_finite());
+    let is_polygon = |object: &tobj::Mesh| object.face_arities.iter().all(|&arity| arity >= 3);
+    positions.iter().all(|position| position.is_finite())
+        && objects.iter().all(|object| is_finite(object) && is_polygon(object))
+}
+
+/// None where an object lacks attributes that its faces name, since they come later or not at all.
+fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Option<TriMesh> {
     // Without a `usemtl` there is only the unnamed material that faces before one get.
-    let has_materials = contents.materials.iter().any(|name| !name.is_empty());
-    let has_uvs = runs.iter().any(|(kind, _)| kind.has_uvs);
-    let has_normals = runs.iter().any(|(kind, _)| kind.has_normals);
-    let triangles = runs.iter().map(|(kind, faces)| faces * (kind.size - 2)).sum();
+    let has_materials = kept.materials.iter().any(|name| !name.is_empty());
+    let has_uvs = kept.runs.iter().any(|(kind, _)| kind.has_uvs);
+    let has_normals = kept.runs.iter().any(|(kind, _)| kind.has_normals);
+    let triangles = objects.iter().flat_map(sizes).map(|size| size - 2).sum();
 
     let mut mesh = TriMesh { triangles: Vec::with_capacity(triangles), ..TriMesh::default() };
-    let mut mesh_uvs = Vec::with_capacity(if has_uvs { triangles } else { 0 });
+    let mut uvs = Vec::with_capacity(if has_uvs { triangles } else { 0 });
     mesh.corner.normals.reserve_exact(if has_normals { triangles } else { 0 });
     let mut polygon = Vec::new();
-    let (mut vertices, mut face_uvs, mut face_normals) = (&corner_vertices[..], &corner_uvs[..], &corner_normals[..]);
-    for &(kind, faces) in &runs {
-        for _ in 0..faces {
-            let face = take(&mut vertices, kind.size);
-            let face_uvs = take(&mut face_uvs, if kind.has_uvs { kind.size } else { 0 });
-            let face_normals = take(&mut face_normals, if kind.has_normals { kind.size } else { 0 });
+    let mut kinds = kept.runs.iter().flat_map(|&(kind, faces)| repeat_n(kind, faces));
+    for object in objects {
+        let numbers: Vec<u32> = numbers(object).collect();
+        let uv = |corner: usize| DVec2::from_slice(&object.texcoords[2 * object.texcoord_indices[corner] as usize..]);
+        let normal = |corner: usize| DVec3::from_slice(&object.normals[3 * object.normal_indices[corner] as usize..]);
+        let mut start = 0;
+        for (size, kind) in sizes(object).zip(&mut kinds) {
+            let lacks_uvs = kind.has_uvs && object.texcoord_indices.is_empty();
+            if lacks_uvs || (kind.has_normals && object.normal_indices.is_empty()) {
+                return None;
+            }
+            let corners = &object.indices[start..start + size];
+            let vertex = |corner: usize| numbers[corners[corner] as usize];
             let mut push = |triangle: [usize; 3]| {
-                let corners = triangle.map(|corner| face[corner]);
-                mesh.triangles.push(corners);
+                let vertices = triangle.map(vertex);
+                mesh.triangles.push(vertices);
                 if has_materials {
                     mesh.triangle_materials.push(kind.material);
                 }
                 if has_uvs {
-                    let uv = |corner: usize| face_uvs.get(corner).map_or(DVec2::ZERO, |&uv| uvs[uv as usize]);
-                    mesh_uvs.push(triangle.map(uv));
+                    uvs.push(triangle.map(|corner| if kind.has_uvs { uv(start + corner) } else { DVec2::ZERO }));
                 }
                 if has_normals {
                     mesh.corner.normals.push(match kind.has_normals {
-                        true => triangle.map(|corner| normals[face_normals[corner] as usize]),
-                        false => [triangle_normal(corners.map(|vertex| positions[vertex as usize])); 3],
+                        true => triangle.map(|corner| normal(start + corner)),
+                        false => [triangle_normal(vertices.map(|vertex| positions[vertex as usize])); 3],
                     });
                 }
             };
-            if kind.size == 3 {
+            if size == 3 {
                 push([0, 1, 2]);
             } else {
                 polygon.clear();
-                polygon.extend(face.iter().map(|&vertex| positions[vertex as usize]));
+                polygon.extend((0..size).map(|corner| positions[vertex(corner) as usize]));
                 triangulate(&polygon, push);
             }
+            start += size;
         }
     }
     if has_uvs {
-        mesh.corner.uvs.push(mesh_uvs);
+        mesh.corner.uvs.push(uvs);
     }
     if has_materials {
-        mesh.materials = contents.materials;
+        mesh.materials = kept.materials;
     }
     mesh.positions = positions;
-    mesh.vertex.colors = contents.colors;
-    mesh.assets.material_libraries = contents.libraries;
-    mesh
+    mesh.vertex.colors = kept.colors;
+    mesh.assets.material_libraries = kept.libraries;
+    Some(mesh)
 }
 
-/// The first `count` numbers, which are left out of the rest.
-fn take<'a>(numbers: &mut &'a [u32], count: usize) -> &'a [u32] {
-    let (taken, rest) = numbers.split_at(count);
-    *numbers = rest;
-    taken
+/// Numbers of the corners of an object's faces.
+fn sizes(object: &tobj::Mesh) -> impl Iterator<Item = usize> {
+    // No sizes stand for nothing but triangles.
+    let triangles = if object.face_arities.is_empty() { object.indices.len() / 3 } else { 0 };
+    object.face_arities.iter().map(|&size| size as usize).chain(repeat_n(3, triangles))
 }

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use crate::io::text::Words;
+
 /// A statement as it stands in the file.
 pub(super) struct Statement<'a> {
     /// The line on which it begins, counted from one.
@@ -22,6 +24,11 @@ impl<'a> Statement<'a> {
         Cow::Owned(self.bytes[..end].iter().map(joined).collect())
     }
 
+    /// The first word.
+    pub(super) fn keyword(&self) -> &'a [u8] {
+        Words { rest: self.bytes }.next().unwrap_or_default()
+    }
+
     /// All of it, for names that may hold the sign of a comment.
     pub(super) fn verbatim(&self) -> &'a [u8] {
         self.bytes
@@ -29,24 +36,42 @@ impl<'a> Statement<'a> {
 }
 
 /// The statements of a file. A backslash at the end joins lines.
-pub(super) fn split_statements(bytes: &[u8]) -> impl Iterator<Item = Statement<'_>> {
-    let next_mark = |from: usize| memchr::memchr2(b'#', b'\\', &bytes[from..]).map_or(bytes.len(), |at| from + at);
-    let (mut start, mut line, mut mark) = (0, 1, next_mark(0));
-    std::iter::from_fn(move || {
-        let (first_line, mut end) = (line, start);
-        while end < bytes.len() {
-            line += 1;
-            end = memchr::memchr(b'\n', &bytes[end..]).map_or(bytes.len(), |offset| end + offset + 1);
-            let statement = bytes[start..end].trim_ascii_end();
-            let is_marked = mark < end;
-            if !is_marked || statement.last() != Some(&b'\\') || end == bytes.len() {
+pub(super) struct Statements<'a> {
+    bytes: &'a [u8],
+    start: usize,
+    line: usize,
+    /// Where the next comment or backslash may be.
+    mark: usize,
+}
+
+impl<'a> Statements<'a> {
+    pub(super) fn of(bytes: &'a [u8]) -> Self {
+        Self { bytes, start: 0, line: 1, mark: next_mark(bytes, 0) }
+    }
+}
+
+impl<'a> Iterator for Statements<'a> {
+    type Item = Statement<'a>;
+
+    fn next(&mut self) -> Option<Statement<'a>> {
+        let (first_line, mut end) = (self.line, self.start);
+        while end < self.bytes.len() {
+            self.line += 1;
+            end = memchr::memchr(b'\n', &self.bytes[end..]).map_or(self.bytes.len(), |offset| end + offset + 1);
+            let bytes = self.bytes[self.start..end].trim_ascii();
+            let is_marked = self.mark < end;
+            if !is_marked || bytes.last() != Some(&b'\\') || end == self.bytes.len() {
                 if is_marked {
-                    mark = next_mark(end);
+                    self.mark = next_mark(self.bytes, end);
                 }
-                start = end;
-                return Some(Statement { line: first_line, bytes: statement, is_marked });
+                self.start = end;
+                return Some(Statement { line: first_line, bytes, is_marked });
             }
         }
         None
-    })
+    }
+}
+
+fn next_mark(bytes: &[u8], from: usize) -> usize {
+    memchr::memchr2(b'#', b'\\', &bytes[from..]).map_or(bytes.len(), |at| from + at)
 }

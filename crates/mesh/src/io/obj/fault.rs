@@ -1,0 +1,75 @@
+//! Which line of a broken OBJ file is at fault.
+
+use super::statement::Statements;
+use crate::io::text::{Words, at_line, parse_integer, read_numbers, text};
+use crate::io::{LineProblem, ParseError};
+
+/// What the three indices of a corner stand for.
+const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+
+/// Looks for the first line that breaks the format. An index that is out of range counts where no line is broken otherwise,
+/// because what it stands for may come later.
+pub(super) fn check_lines(bytes: &[u8]) -> Result<(), ParseError> {
+    let totals = check_statements(bytes, [usize::MAX; 3])?;
+    check_statements(bytes, totals)?;
+    Ok(())
+}
+
+/// Returns the numbers of vertices, texture coordinates and normals, of which there are to be `totals`.
+fn check_statements(bytes: &[u8], totals: [usize; 3]) -> Result<[usize; 3], ParseError> {
+    let mut counts = [0; 3];
+    for statement in Statements::of(bytes) {
+        check_statement(&statement.plain(), &mut counts, totals).map_err(at_line(statement.line))?;
+    }
+    Ok(counts)
+}
+
+/// `counts` are those of the statements before, which negative indices count back from.
+fn check_statement(statement: &[u8], counts: &mut [usize; 3], totals: [usize; 3]) -> Result<(), LineProblem> {
+    let mut words = Words { rest: statement };
+    let kind = match words.next().unwrap_or_default() {
+        b"v" => {
+            // Seven are a position with color and alpha.
+            read_numbers::<7>(words, 3)?;
+            0
+        }
+        b"vt" => {
+            read_numbers::<2>(words, 1)?;
+            1
+        }
+        b"vn" => {
+            read_numbers::<3>(words, 3)?;
+            2
+        }
+        b"f" => return check_face(words, *counts, totals),
+        _ => return Ok(()),
+    };
+    counts[kind] += 1;
+    Ok(())
+}
+
+/// Refuses a face that is no polygon, or names what there is not.
+pub(super) fn check_face(words: Words<'_>, counts: [usize; 3], totals: [usize; 3]) -> Result<(), LineProblem> {
+    let mut corners = 0;
+    for word in words {
+        check_corner(word, counts, totals)?;
+        corners += 1;
+    }
+    if corners < 3 { Err(LineProblem::TooFewCorners(corners)) } else { Ok(()) }
+}
+
+fn check_corner(word: &[u8], counts: [usize; 3], totals: [usize; 3]) -> Result<(), LineProblem> {
+    let not_a_corner = || LineProblem::NotACorner(text(word));
+    for (place, field) in word.split(|&byte| byte == b'/').enumerate() {
+        let kind = *KINDS.get(place).ok_or_else(not_a_corner)?;
+        if field.is_empty() && place > 0 {
+            continue;
+        }
+        let index = parse_integer(field).ok_or_else(not_a_corner)?;
+        let count = if index <= 0 { counts[place] } else { totals[place] };
+        if index == 0 || index.unsigned_abs() > count as u64 {
+            return Err(LineProblem::IndexOutOfRange { kind, index, count });
+        }
+    }
+    Ok(())
+}
