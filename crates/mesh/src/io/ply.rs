@@ -1,18 +1,17 @@
 //! Stanford PLY.
 //!
-//! Read and written straight from and to the bytes: a library that hands over element after element takes ten times as
-//! long, and many times the memory.
+//! Read by the library `ply-rs-bw`, some elements at a time, so that what they take beside the mesh stays small. Attributes of
+//! corners that differ at a vertex are lists of the face, so that the surface stays closed for every reader: `texcoord` and
+//! `color` as MeshLab has them, and `normal` after their model.
 
 mod body;
-mod faces;
+mod face;
 mod header;
-mod number;
 mod reader;
-mod vertices;
+mod vertex;
 mod writer;
 
-pub(super) use header::{Element, Header};
-pub(super) use number::{ByteOrder, Number};
+pub(super) use header::{coordinates, parse_header, record_size, scalar_size};
 pub(super) use reader::parse;
-pub(super) use vertices::position_scalars;
+pub(super) use vertex::read_points;
 pub(super) use writer::write;

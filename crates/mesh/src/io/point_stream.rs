@@ -12,7 +12,9 @@ use glam::DVec3;
 
 pub use error::PointStreamError;
 
-use super::ply::{ByteOrder, Number};
+use ply_rs_bw::ply::Encoding;
+
+use super::ply::read_points;
 use layout::{Kind, Layout};
 
 /// The points of a PLY or NumPy file, read and written chunk by chunk; everything else in the file is passed through as it is.
@@ -123,41 +125,30 @@ impl PointStream {
         self.chunk_start = self.position;
         self.chunk.clear();
         match self.layout.kind {
-            Kind::Binary { size, offsets, number, order, .. } => {
+            Kind::Binary { size, .. } => {
                 let length = (count * size) as u64;
                 let read = (&mut self.input).take(length).read_to_end(&mut self.chunk);
                 read.map_err(|source| PointStreamError::read(&self.path, source))?;
+                self.position += self.chunk.len() as u64;
                 if (self.chunk.len() as u64) < length {
-                    self.position += self.chunk.len() as u64;
                     return Err(self.truncated());
                 }
-                self.position += length;
-                points.extend(
-                    self.chunk
-                        .chunks_exact(size)
-                        .map(|record| DVec3::from_array(offsets.map(|at| number.decode(&record[at..], order)))),
-                );
-                if let Some(bad) = points.iter().position(|point| !point.is_finite()) {
-                    let offset = self.chunk_start + (bad * size) as u64;
-                    return Err(self.not_finite(bad, format!("at byte {offset}")));
-                }
             }
-            Kind::Text { columns, .. } => {
-                for index in 0..count {
-                    let start = self.chunk.len();
+            Kind::Text { .. } => {
+                for _ in 0..count {
                     self.read_line()?;
                     self.position += 1;
-                    let point = text_points::read_point(&self.chunk[start..], columns);
-                    let line = self.position;
-                    points.push(point.map_err(|problem| PointStreamError::Point {
-                        path: self.path.clone(),
-                        point: self.read + index as u64,
-                        place: format!("on line {line}"),
-                        problem: problem.to_string(),
-                    })?);
                 }
             }
         }
+        self.layout.vertices.count = count;
+        read_points(&self.layout.ply, &self.layout.vertices, &self.chunk, points).map_err(|(index, problem)| {
+            let place = match self.layout.kind {
+                Kind::Binary { size, .. } => format!("at byte {}", self.chunk_start + (index * size) as u64),
+                Kind::Text { .. } => format!("on line {}", self.chunk_start + index as u64 + 1),
+            };
+            PointStreamError::Point { path: self.path.clone(), point: self.read + index as u64, place, problem }
+        })?;
         self.read += points.len() as u64;
         Ok(!points.is_empty())
     }
@@ -177,11 +168,12 @@ impl PointStream {
             return Err(PointStreamError::TooLarge { path: self.path.clone(), point });
         }
         let bytes = match self.layout.kind {
-            Kind::Binary { size, offsets, number, order, .. } => {
+            Kind::Binary { size, offsets, .. } => {
+                let is_big = self.layout.ply.encoding == Encoding::BinaryBigEndian;
                 assert_eq!(points.len() * size, self.chunk.len(), "as many points as were read");
                 for (record, point) in self.chunk.chunks_exact_mut(size).zip(points) {
                     for (at, coordinate) in offsets.into_iter().zip(point.to_array()) {
-                        encode(number, order, coordinate, &mut record[at..]);
+                        encode(coordinate, is_single, is_big, &mut record[at..]);
                     }
                 }
                 &self.chunk
@@ -230,27 +222,17 @@ impl PointStream {
         };
         PointStreamError::Truncated { path: self.path.clone(), announced: self.count(), place }
     }
-
-    fn not_finite(&self, index: usize, place: String) -> PointStreamError {
-        let problem = "has a coordinate that is not a finite number".to_owned();
-        PointStreamError::Point { path: self.path.clone(), point: self.read + index as u64, place, problem }
-    }
 }
 
-/// Writes `value` over the number at the beginning of `bytes`, unless it is that number.
-fn encode(number: Number, order: ByteOrder, value: f64, bytes: &mut [u8]) {
-    let put = |bytes: &mut [u8], mut little: [u8; 8], size: usize| {
-        if order == ByteOrder::Big {
-            little[..size].reverse();
-        }
-        bytes[..size].copy_from_slice(&little[..size]);
-    };
-    let mut little = [0; 8];
-    match number {
-        Number::F32 => little[..4].copy_from_slice(&(value as f32).to_le_bytes()),
-        _ => little = value.to_le_bytes(),
+/// Writes `value` over the number at the beginning of `bytes`.
+fn encode(value: f64, is_single: bool, is_big: bool, bytes: &mut [u8]) {
+    let single = value as f32;
+    match (is_single, is_big) {
+        (true, false) => bytes[..4].copy_from_slice(&single.to_le_bytes()),
+        (true, true) => bytes[..4].copy_from_slice(&single.to_be_bytes()),
+        (false, false) => bytes[..8].copy_from_slice(&value.to_le_bytes()),
+        (false, true) => bytes[..8].copy_from_slice(&value.to_be_bytes()),
     }
-    put(bytes, little, number.size());
 }
 
 /// Reads up to and with the line that begins with `end`, or `most` bytes.

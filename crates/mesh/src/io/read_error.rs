@@ -95,9 +95,6 @@ pub enum LineProblem {
         /// How many there are.
         found: usize,
     },
-    /// A line that ends before its last number.
-    #[error("the line ends too early")]
-    TooFewWords,
     /// A word that should be the corner of a face.
     #[error("'{0}' is not a face corner (v, v/vt, v//vn or v/vt/vn)")]
     NotACorner(String),

@@ -1,6 +1,10 @@
 //! STL, both kinds.
+//!
+//! The library `stl_io` reads binary files. Text files are read here, because it rounds them to single precision, stops after
+//! the first solid, refuses solids without a name and facets whose normal is not a number, and its errors name no line.
 
-use std::io::{self, Write};
+use std::borrow::Cow;
+use std::io::{self, Cursor, Write};
 
 use glam::{DVec3, Vec3};
 
@@ -22,9 +26,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let expected = count.map(|count| HEADER + RECORD * count);
     // The size decides, because the header of a binary file may say anything; that of a text file is its first word.
     match expected {
-        Some(expected) if expected == bytes.len() => Ok(parse_binary(&bytes[HEADER..])),
+        Some(expected) if expected == bytes.len() => parse_binary(bytes),
         _ if bytes.trim_ascii_start().starts_with(b"solid") => parse_text(bytes),
-        Some(expected) if expected < bytes.len() => Ok(parse_binary(&bytes[HEADER..expected])),
+        Some(expected) if expected < bytes.len() => parse_binary(bytes),
         Some(expected) => Err(ParseError::Malformed(format!(
             "the file is truncated: {expected} bytes announced, {} found",
             bytes.len()
@@ -33,11 +37,20 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     }
 }
 
-fn parse_binary(bytes: &[u8]) -> TriMesh {
-    let records = bytes.as_chunks::<RECORD>().0;
-    let coordinate = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-    let corner = |bytes: &[u8]| Vec3::from_array([0, 4, 8].map(|at| coordinate(&bytes[at..]))).as_dvec3();
-    welded(records.iter().map(|record| [12, 24, 36].map(|at| corner(&record[at..]))), records.len())
+fn parse_binary(bytes: &[u8]) -> Result<TriMesh, ParseError> {
+    let mut bytes = Cow::Borrowed(bytes);
+    // The library takes every file that begins so for text.
+    if bytes.starts_with(b"solid") {
+        bytes.to_mut()[0] = 0;
+    }
+    let corners = |triangle: stl_io::Triangle| triangle.vertices.map(|corner| Vec3::from_array(corner.0).as_dvec3());
+    let mut source = Cursor::new(bytes.as_ref());
+    let triangles = stl_io::create_stl_reader(&mut source);
+    let mesh = triangles.and_then(|triangles| {
+        let count = triangles.size_hint().0;
+        welded(triangles.map(|triangle| triangle.map(corners)), count)
+    });
+    mesh.map_err(|error| ParseError::Malformed(error.to_string()))
 }
 
 /// Corners of all facets of all solids. Only `vertex` and the ends of loops matter.
@@ -58,18 +71,18 @@ fn parse_text(bytes: &[u8]) -> Result<TriMesh, ParseError> {
         }
     }
     match positions.as_chunks() {
-        (triangles, []) => Ok(welded(triangles.iter().copied(), triangles.len())),
+        (triangles, []) => welded(triangles.iter().copied().map(Ok), triangles.len()),
         _ => Err(at_line(last_line)(LineProblem::NotATriangle)),
     }
 }
 
 /// Equal positions become one vertex; triangles that lose a side by it are left out.
-fn welded(triangles: impl Iterator<Item = [DVec3; 3]>, count: usize) -> TriMesh {
+fn welded<E>(triangles: impl Iterator<Item = Result<[DVec3; 3], E>>, count: usize) -> Result<TriMesh, E> {
     // A closed surface has half as many vertices as triangles, or little less.
     let mut table = PositionTable::with_capacity(count / 2);
     let mut mesh = TriMesh::new(Vec::with_capacity(count / 2), Vec::with_capacity(count));
     for corners in triangles {
-        let [a, b, c] = corners.map(|position| {
+        let [a, b, c] = corners?.map(|position| {
             let new = mesh.positions.len() as u32;
             let vertex = table.find_or_insert(position, new, |known| mesh.positions[known as usize]);
             if vertex == new {
@@ -81,7 +94,7 @@ fn welded(triangles: impl Iterator<Item = [DVec3; 3]>, count: usize) -> TriMesh 
             mesh.triangles.push([a, b, c]);
         }
     }
-    mesh
+    Ok(mesh)
 }
 
 /// Writes binary STL. The facet normals are those of the triangles as rounded.

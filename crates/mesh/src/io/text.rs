@@ -40,10 +40,6 @@ impl Words<'_> {
         }
     }
 
-    pub(super) fn is_at_end(&self) -> bool {
-        self.rest.iter().all(is_space)
-    }
-
     #[inline]
     pub(super) fn skip_spaces(&mut self) {
         while let [first, rest @ ..] = self.rest

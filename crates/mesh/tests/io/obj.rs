@@ -1,5 +1,5 @@
 use isochore_mesh::io::Format;
-use isochore_mesh::{TriMesh, io};
+use isochore_mesh::{TriMesh, io, primitives};
 
 use crate::{parse, reread};
 
@@ -35,6 +35,31 @@ fn faces_before_a_material_have_none() {
 fn forward_references_are_allowed() {
     let mesh = parse_obj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
     assert_eq!(mesh.triangles, [[0, 1, 2]]);
+}
+
+/// More faces than are read at a time come before what they name, some of them counting back.
+#[test]
+fn large_files_may_refer_forward() {
+    let ball = primitives::icosphere(1.0, 5);
+    let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3/2 -2/2 -1/2\n");
+    for [a, b, c] in &ball.triangles {
+        text.push_str(&format!("f {}/1 {}/1 {}/2\n", a + 4, b + 4, c + 4));
+    }
+    ball.positions.iter().for_each(|p| text.push_str(&format!("v {} {} {}\n", p.x, p.y, p.z)));
+    let mesh = parse_obj(&format!("{text}vt 0.5 0\nvt 0.25 0\n"));
+    assert_eq!(mesh.positions[3..], ball.positions);
+    assert_eq!(mesh.triangles[1..], ball.triangles.iter().map(|t| t.map(|vertex| vertex + 3)).collect::<Vec<_>>());
+    assert_eq!(mesh.corner.uvs[0][0].map(|uv| uv.x), [0.25; 3]);
+    assert_eq!(mesh.corner.uvs[0][20480].map(|uv| uv.x), [0.5, 0.5, 0.25]);
+    let faces = 5..5 + ball.triangles.len();
+    let error = parse(Format::Obj, &text).unwrap_err().to_string();
+    assert_eq!(error, format!("line {}: texture coordinate 2 is out of range: there are 0", faces.start - 1));
+}
+
+#[test]
+fn faces_whose_corners_differ_in_kind_have_only_what_all_have() {
+    let mesh = parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0.5 0.5\nf 1/1 2 3/1\nf 1/1 2/1 4/1\n");
+    assert_eq!(mesh.corner.uvs[0].concat().iter().map(|uv| uv.x).collect::<Vec<_>>(), [0.0, 0.0, 0.0, 0.5, 0.5, 0.5]);
 }
 
 #[test]

@@ -1,118 +1,79 @@
 //! The data of a PLY file.
 
-use super::header::{Element, Header, Property};
-use super::number::{ByteOrder, Number};
-use crate::io::text::{Words, at_line};
-use crate::io::{LineProblem, ParseError};
+use std::io::ErrorKind;
 
-/// What is left of the data, read number by number in the order of the header.
-#[derive(Clone)]
+use ply_rs_bw::parser::{self, Parser, Reader};
+use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyAccess};
+
+use crate::io::ParseError;
+
+/// Elements that are read at a time. Many more, and they take memory beside the mesh; many fewer, and each call shows.
+const CHUNK: usize = 1 << 10;
+
+/// What is left of the data, read element by element in the order of the header.
 pub(super) struct Body<'a> {
-    pub(super) rest: &'a [u8],
-    /// None for text, where an element is a line.
-    pub(super) order: Option<ByteOrder>,
-    line: usize,
-    words: Words<'a>,
-    /// The element at hand, for errors.
-    at: (&'a str, usize),
+    header: &'a Header,
+    reader: Reader<&'a [u8]>,
+    /// Lines of the file before those that the reader counts.
+    lines_before: usize,
 }
 
 impl<'a> Body<'a> {
-    pub(super) fn new(bytes: &'a [u8], header: &Header) -> Self {
-        let rest = &bytes[header.length..];
-        Self { rest, order: header.order, line: header.lines, words: Words { rest: &[] }, at: ("header", 0) }
+    pub(super) fn new(header: &'a Header, bytes: &'a [u8], lines_before: usize) -> Self {
+        Self { header, reader: Reader::new(bytes), lines_before }
     }
 
-    /// Goes on to the element of this name and number.
-    pub(super) fn begin(&mut self, element: &'a Element, number: usize) -> Result<(), ParseError> {
-        self.at = (&element.name, number);
-        while self.order.is_none() && self.words.is_at_end() {
-            if self.rest.is_empty() {
-                return Err(self.truncated());
+    /// The same data, to be read once more from here on.
+    pub(super) fn copy(&self) -> Self {
+        Self::new(self.header, self.rest(), self.lines_before + self.reader.line().max(1) - 1)
+    }
+
+    pub(super) fn rest(&self) -> &'a [u8] {
+        self.reader.get_ref()
+    }
+
+    /// Hands over all elements of a kind, with their numbers.
+    ///
+    /// # Errors
+    /// [`ParseError::Malformed`], naming the element and, in text, its line; and what `take` returns.
+    pub(super) fn read<E: PropertyAccess>(
+        &mut self,
+        element: &ElementDef,
+        mut take: impl FnMut(usize, E) -> Result<(), ParseError>,
+    ) -> Result<(), ParseError> {
+        let parser = Parser::<E>::new();
+        let mut part = element.clone();
+        let start = self.reader.line().max(1);
+        for first in (0..element.count).step_by(CHUNK) {
+            part.count = CHUNK.min(element.count - first);
+            let read = parser.read_payload_for_element(&mut self.reader, &part, self.header);
+            // Elements are counted as lines, of binary data too.
+            let elements = read.map_err(|error| self.failed(&error, element, self.reader.line() - start))?;
+            for (element, number) in elements.into_iter().zip(first..) {
+                take(number, element)?;
             }
-            let end = memchr::memchr(b'\n', self.rest);
-            let (line, rest) = self.rest.split_at(end.map_or(self.rest.len(), |end| end + 1));
-            (self.words, self.rest) = (Words { rest: line }, rest);
-            self.line += 1;
         }
         Ok(())
     }
 
-    /// Leaves the element at hand: of text, what is left of its line.
-    pub(super) fn end(&mut self) {
-        self.words.rest = &[];
-    }
-
-    #[inline]
-    pub(super) fn number(&mut self, number: Number) -> Result<f64, ParseError> {
-        match self.order {
-            Some(order) => {
-                let size = number.size();
-                let bytes = self.rest.get(..size).ok_or_else(|| self.truncated())?;
-                self.rest = &self.rest[size..];
-                Ok(number.decode(bytes, order))
+    fn failed(&self, error: &parser::ParseError, element: &ElementDef, number: usize) -> ParseError {
+        let name = &element.name;
+        ParseError::Malformed(match self.header.encoding {
+            _ if error.kind() == ErrorKind::UnexpectedEof => {
+                format!("the file is truncated: it ends in {name} {number}, counted from zero")
             }
-            None => match self.words.next_number() {
-                Ok(Some(number)) => Ok(number),
-                Ok(None) => Err(at_line(self.line)(LineProblem::TooFewWords)),
-                Err(problem) => Err(at_line(self.line)(problem)),
-            },
-        }
-    }
-
-    /// The length of a list, which is not longer than what is left of the file.
-    pub(super) fn length(&mut self, number: Number) -> Result<usize, ParseError> {
-        let length = self.number(number)?;
-        let most = self.rest.len() + self.words.rest.len();
-        if (0.0..=most as f64).contains(&length) { Ok(length as usize) } else { Err(self.truncated()) }
-    }
-
-    /// Reads past a property.
-    pub(super) fn skip(&mut self, property: &Property) -> Result<(), ParseError> {
-        let count = match property.length {
-            Some(length) => self.length(length)?,
-            None => 1,
-        };
-        match self.order {
-            Some(_) => {
-                let size = count * property.number.size();
-                self.rest = self.rest.get(size..).ok_or_else(|| self.truncated())?;
+            Encoding::Ascii => {
+                let line = self.lines_before + self.reader.line();
+                format!("line {line}: {name} {number}: {}", problem(error))
             }
-            None if self.words.by_ref().take(count).count() < count => {
-                return Err(at_line(self.line)(LineProblem::TooFewWords));
-            }
-            None => {}
-        }
-        Ok(())
+            _ => format!("{name} {number}, counted from zero: {}", problem(error)),
+        })
     }
+}
 
-    /// Reads past all elements of a kind.
-    pub(super) fn skip_all(&mut self, element: &'a Element) -> Result<(), ParseError> {
-        for number in 0..element.count {
-            self.begin(element, number)?;
-            element.properties.iter().try_for_each(|property| self.skip(property))?;
-            self.end();
-        }
-        Ok(())
-    }
-
-    /// All elements of a kind without lists, in binary data: their bytes, one after the other, and their byte order.
-    pub(super) fn take_records(&mut self, element: &'a Element) -> Result<Option<(&'a [u8], ByteOrder)>, ParseError> {
-        let (Some(size), Some(order)) = (element.size(), self.order) else { return Ok(None) };
-        match size.checked_mul(element.count).and_then(|length| self.rest.split_at_checked(length)) {
-            Some((records, rest)) => {
-                self.rest = rest;
-                Ok(Some((records, order)))
-            }
-            None => {
-                self.at = (&element.name, self.rest.len() / size.max(1));
-                Err(self.truncated())
-            }
-        }
-    }
-
-    pub(super) fn truncated(&self) -> ParseError {
-        let (element, number) = self.at;
-        ParseError::Malformed(format!("the file is truncated: it ends in {element} {number}, counted from zero"))
-    }
+/// What the library complains of: the innermost of its errors, which stands last.
+pub(super) fn problem(error: &parser::ParseError) -> String {
+    let message = error.to_string();
+    let last = message.lines().last().unwrap_or_default().trim();
+    last.strip_prefix("Error: ").unwrap_or(last).to_owned()
 }

@@ -1,129 +1,90 @@
 //! The header of a PLY file.
 
-use super::number::{ByteOrder, Number};
+use std::io::ErrorKind;
+
+use ply_rs_bw::parser::{Parser, Reader};
+use ply_rs_bw::ply::{DefaultElement, ElementDef, Header, PropertyType, ScalarType};
+
 use crate::io::ParseError;
-use crate::io::text::{Words, text};
+use crate::io::text::text;
 
-/// What the header announces.
-#[derive(Debug, Clone, PartialEq)]
-pub(in crate::io) struct Header {
-    /// None for text.
-    pub(in crate::io) order: Option<ByteOrder>,
-    /// In the order of their data.
-    pub(in crate::io) elements: Vec<Element>,
-    /// Bytes of the header, the end of its last line included.
-    pub(in crate::io) length: usize,
-    /// Lines of the header.
-    pub(in crate::io) lines: usize,
-}
+/// Most characters of a line that an error shows.
+const SHOWN: usize = 80;
 
-/// An element and how many there are.
-#[derive(Debug, Clone, PartialEq)]
-pub(in crate::io) struct Element {
-    pub(in crate::io) name: String,
-    pub(in crate::io) count: usize,
-    pub(in crate::io) properties: Vec<Property>,
-}
-
-/// A property of an element.
-#[derive(Debug, Clone, PartialEq)]
-pub(in crate::io) struct Property {
-    pub(in crate::io) name: String,
-    pub(in crate::io) number: Number,
-    /// The type of the length of a list; none for a single number.
-    pub(in crate::io) length: Option<Number>,
-}
-
-impl Header {
-    /// # Errors
-    /// [`ParseError::Malformed`], naming the line.
-    pub(in crate::io) fn parse(bytes: &[u8]) -> Result<Self, ParseError> {
-        let (mut order, mut elements) = (None, Vec::<Element>::new());
-        let (mut length, mut lines) = (0, 0);
-        loop {
-            let rest = &bytes[length..];
-            let end = memchr::memchr(b'\n', rest);
-            let line = &rest[..end.unwrap_or(rest.len())];
-            length += end.map_or(rest.len(), |end| end + 1);
-            lines += 1;
-            let malformed = |problem: &str| Err(ParseError::Malformed(format!("line {lines}: {problem}")));
-            let words: Vec<&[u8]> = Words { rest: line }.take(5).collect();
-            match *words {
-                [b"ply"] if lines == 1 => {}
-                _ if lines == 1 => return malformed("'ply' expected: this is no PLY file"),
-                _ if end.is_none() => return malformed("the header has no 'end_header'"),
-                [b"format", format, _] => {
-                    order = Some(match format {
-                        b"ascii" => None,
-                        b"binary_little_endian" => Some(ByteOrder::Little),
-                        b"binary_big_endian" => Some(ByteOrder::Big),
-                        _ => return malformed(&format!("unknown format '{}'", text(format))),
-                    });
-                }
-                [b"element", name, count] => {
-                    let Ok(count) = text(count).parse() else {
-                        return malformed(&format!("'{}' is not a number of elements", text(count)));
-                    };
-                    elements.push(Element { name: text(name), count, properties: Vec::new() });
-                }
-                [b"property", ref kind @ .., name] => {
-                    let Some((number, length)) = types(kind) else { return malformed("unknown type of property") };
-                    let Some(element) = elements.last_mut() else {
-                        return malformed("a property comes before all elements");
-                    };
-                    element.properties.push(Property { name: text(name), number, length });
-                }
-                [b"end_header"] => break,
-                [] | [b"comment" | b"obj_info", ..] => {}
-                _ => return malformed(&format!("'{}' does not belong in the header", text(line))),
-            }
+/// The header, its bytes and its lines.
+///
+/// # Errors
+/// [`ParseError::Malformed`], naming the line.
+pub(in crate::io) fn parse_header(bytes: &[u8]) -> Result<(Header, usize, usize), ParseError> {
+    let (mut length, mut lines) = (0, 0);
+    for line in bytes.split_inclusive(|&byte| byte == b'\n') {
+        length += line.len();
+        lines += 1;
+        if line.trim_ascii() == b"end_header" {
+            break;
         }
-        match order {
-            Some(order) => Ok(Self { order, elements, length, lines }),
-            None => Err(ParseError::Malformed("the header names no format".into())),
+        if lines == 1 && line.trim_ascii() != b"ply" {
+            return Err(malformed(bytes, 1));
         }
     }
-}
-
-/// The type of a property's numbers and, for a list, of its length.
-fn types(words: &[&[u8]]) -> Option<(Number, Option<Number>)> {
-    match words {
-        [number] => Some((Number::of_name(number)?, None)),
-        [b"list", length, number] => {
-            let length = Number::of_name(length).filter(|length| length.is_whole())?;
-            Some((Number::of_name(number)?, Some(length)))
+    // Comments may be in any encoding, but the library wants text.
+    let shown = String::from_utf8_lossy(&bytes[..length]);
+    let header = Parser::<DefaultElement>::new().read_header(&mut Reader::new(shown.as_bytes()));
+    match header {
+        Ok(header) => Ok((header, length, lines)),
+        Err(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            Err(ParseError::Malformed("the header has no 'end_header'".into()))
         }
-        _ => None,
+        Err(error) => Err(match error.line() {
+            Some(line) => malformed(bytes, line),
+            None => ParseError::Malformed(error.to_string().lines().collect::<Vec<_>>().join(" ")),
+        }),
     }
 }
 
-impl Element {
-    /// The property of one of these names that is a single number.
-    pub(in crate::io) fn scalar(&self, names: &[&str]) -> Option<Scalar> {
-        let is_it = |property: &Property| property.length.is_none() && names.contains(&property.name.as_str());
-        let index = self.properties.iter().position(is_it)?;
-        let offset = self.properties[..index].iter().map(|property| property.number.size()).sum();
-        Some(Scalar { index, offset, number: self.properties[index].number })
-    }
-
-    /// Several such properties, where all are there.
-    pub(in crate::io) fn scalars<const N: usize>(&self, names: [&[&str]; N]) -> Option<[Scalar; N]> {
-        let found: Vec<Scalar> = names.into_iter().map_while(|names| self.scalar(names)).collect();
-        found.try_into().ok()
-    }
-
-    /// Bytes of the element in binary data; none where there is a list in it.
-    pub(in crate::io) fn size(&self) -> Option<usize> {
-        self.properties.iter().map(|property| property.length.is_none().then(|| property.number.size())).sum()
-    }
+fn malformed(bytes: &[u8], line: usize) -> ParseError {
+    let shown = bytes.split(|&byte| byte == b'\n').nth(line - 1).unwrap_or_default();
+    let shown: String = text(shown).chars().take(SHOWN).flat_map(char::escape_default).collect();
+    ParseError::Malformed(format!("line {line}: '{shown}' does not belong in the header of a PLY file"))
 }
 
-/// A property that is a single number.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::io) struct Scalar {
-    /// Which of the properties it is.
-    pub(in crate::io) index: usize,
-    /// Bytes before it in binary data, where there is no list among the properties.
-    pub(in crate::io) offset: usize,
-    pub(in crate::io) number: Number,
+/// True where the element has a number of each of these meanings, under any of its names.
+pub(super) fn has_numbers(element: &ElementDef, meanings: &[&[&str]]) -> bool {
+    let is_number = |name: &&str| {
+        let property = element.properties.get(*name);
+        property.is_some_and(|property| matches!(property.data_type, PropertyType::Scalar(_)))
+    };
+    meanings.iter().all(|names| names.iter().any(is_number))
+}
+
+/// Which of the properties of the vertices are their coordinates, and the types of these.
+///
+/// # Errors
+/// [`ParseError::Malformed`] where one is missing.
+pub(in crate::io) fn coordinates(vertices: &ElementDef) -> Result<[(usize, &ScalarType); 3], ParseError> {
+    let find = |name: &str| match vertices.properties.get_full(name).map(|(index, _, found)| (index, &found.data_type))
+    {
+        Some((index, PropertyType::Scalar(scalar))) => Ok((index, scalar)),
+        _ => Err(ParseError::Malformed("the vertices need the properties x, y and z, each a number".into())),
+    };
+    Ok([find("x")?, find("y")?, find("z")?])
+}
+
+/// Bytes of the first `properties` of an element in binary data; none where there is a list among them.
+pub(in crate::io) fn record_size(element: &ElementDef, properties: usize) -> Option<usize> {
+    let size = |kind: &PropertyType| match kind {
+        PropertyType::Scalar(scalar) => Some(scalar_size(scalar)),
+        PropertyType::List(..) => None,
+    };
+    element.properties.values().take(properties).map(|property| size(&property.data_type)).sum()
+}
+
+/// Bytes of a number.
+pub(in crate::io) fn scalar_size(scalar: &ScalarType) -> usize {
+    match scalar {
+        ScalarType::Char | ScalarType::UChar => 1,
+        ScalarType::Short | ScalarType::UShort => 2,
+        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
+        ScalarType::Double => 8,
+    }
 }

@@ -1,18 +1,20 @@
 //! Reading PLY.
 
+use ply_rs_bw::ply::PropertyAccess;
+
 use super::body::Body;
-use super::faces::Faces;
-use super::header::Header;
-use super::vertices::Vertices;
+use super::face::Triangles;
+use super::header::parse_header;
+use super::vertex::Vertices;
 use crate::io::ParseError;
 use crate::{CornerAttributes, TriMesh, VertexAttributes};
 
 /// Reads PLY of any encoding. Elements other than vertices and faces are passed over.
 pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
-    let header = Header::parse(bytes)?;
-    let mut body = Body::new(bytes, &header);
+    let (header, length, lines) = parse_header(bytes)?;
+    let mut body = Body::new(&header, &bytes[length..], lines);
     let (mut vertices, mut faces) = (None, None);
-    for element in &header.elements {
+    for (place, element) in header.elements.values().enumerate() {
         // Without properties there is nothing to read, however many are announced.
         if element.properties.is_empty() {
             continue;
@@ -20,28 +22,36 @@ pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
         match element.name.as_str() {
             "vertex" => vertices = Some(Vertices::read(&mut body, element)?),
             "face" => {
-                faces = Some((body.clone(), element));
+                faces = Some((body.copy(), element));
                 // Read at the end, because they may come before the vertices that they need.
-                if vertices.is_none() || header.elements.last() != Some(element) {
-                    body.skip_all(element)?;
+                if vertices.is_none() || place + 1 < header.elements.len() {
+                    body.read(element, |_, Ignored| Ok(()))?;
                 }
             }
-            _ => body.skip_all(element)?,
+            _ => body.read(element, |_, Ignored| Ok(()))?,
         }
     }
     let vertices = vertices.unwrap_or_default();
-    let mut corner = CornerAttributes::default();
-    let mut triangles = Vec::new();
-    if let Some((mut body, element)) = faces {
-        let faces = Faces::read(&mut body, element, &vertices)?;
-        triangles = faces.triangles;
-        corner = CornerAttributes {
-            uvs: if faces.uvs.is_empty() { Vec::new() } else { vec![faces.uvs] },
-            normals: faces.normals,
-            colors: faces.colors,
-        };
-    }
-    let vertex = VertexAttributes { colors: vertices.colors, skin: Vec::new() };
-    let mesh = TriMesh { positions: vertices.positions, triangles, corner, vertex, ..TriMesh::default() };
+    let triangles = match faces {
+        Some((mut body, element)) => Triangles::read(&mut body, element, &vertices)?,
+        None => Triangles::default(),
+    };
+    let uvs = if triangles.uvs.is_empty() { Vec::new() } else { vec![triangles.uvs] };
+    let mesh = TriMesh {
+        positions: vertices.positions,
+        triangles: triangles.vertices,
+        corner: CornerAttributes { uvs, normals: triangles.normals, colors: triangles.colors },
+        vertex: VertexAttributes { colors: vertices.colors, skin: Vec::new() },
+        ..TriMesh::default()
+    };
     Ok(mesh.welded_at_boundary())
+}
+
+/// An element that is read past.
+struct Ignored;
+
+impl PropertyAccess for Ignored {
+    fn new() -> Self {
+        Self
+    }
 }

@@ -3,8 +3,10 @@
 use std::io::BufRead;
 use std::path::Path;
 
+use ply_rs_bw::ply::{Addable, ElementDef, Encoding, Header, PropertyDef, PropertyType, ScalarType};
+
 use super::{PointStreamError, read_header};
-use crate::io::ply::{ByteOrder, Element, Header, Number, position_scalars};
+use crate::io::ply::{coordinates, parse_header, record_size, scalar_size};
 
 /// Most bytes of a header. Larger, and a file that is something else altogether takes memory before it is refused; smaller, and
 /// long comments are.
@@ -17,15 +19,19 @@ pub(super) struct Layout {
     pub(super) header: Vec<u8>,
     pub(super) count: u64,
     pub(super) kind: Kind,
+    /// The header of PLY, and its vertices. A NumPy array is as good as the data of such a file.
+    pub(super) ply: Header,
+    pub(super) vertices: ElementDef,
+    pub(super) number: ScalarType,
 }
 
 /// How the points are written.
 #[derive(Debug)]
 pub(super) enum Kind {
     /// In records of `size` bytes, after as many others.
-    Binary { bytes_before: u64, size: usize, offsets: [usize; 3], number: Number, order: ByteOrder },
+    Binary { bytes_before: u64, size: usize, offsets: [usize; 3] },
     /// In lines, as the words of these numbers, after as many others.
-    Text { lines: u64, lines_before: u64, columns: [usize; 3], number: Number },
+    Text { lines: u64, lines_before: u64, columns: [usize; 3] },
 }
 
 impl Layout {
@@ -43,36 +49,36 @@ impl Layout {
         let bytes = bytes.map_err(|source| PointStreamError::read(path, source))?;
         let broken = |source| PointStreamError::Header { path: path.to_owned(), source: Box::new(source) };
         let unfit = |problem: &str| PointStreamError::header(path, problem);
-        let header = Header::parse(&bytes).map_err(broken)?;
-        let vertex = header.elements.iter().position(|element| element.name == "vertex");
-        let vertex = vertex.ok_or_else(|| unfit("it has no vertices"))?;
-        let (before, vertices) = (&header.elements[..vertex], &header.elements[vertex]);
-        let scalars = position_scalars(vertices).map_err(broken)?;
-        let number = scalars[0].number;
-        if scalars.iter().any(|scalar| scalar.number != number) || !matches!(number, Number::F32 | Number::F64) {
+        let (ply, _, lines) = parse_header(&bytes).map_err(broken)?;
+        let vertex = ply.elements.get_index_of("vertex").ok_or_else(|| unfit("it has no vertices"))?;
+        let before = || ply.elements.values().take(vertex);
+        let vertices = ply.elements[vertex].clone();
+        let coordinates = coordinates(&vertices).map_err(broken)?;
+        let columns = coordinates.map(|(column, _)| column);
+        let number = coordinates[0].1.clone();
+        if coordinates.iter().any(|&(_, other)| *other != number)
+            || !matches!(number, ScalarType::Float | ScalarType::Double)
+        {
             return Err(unfit("x, y and z must be of one type, float or double, to be written over"));
         }
-        let lists = "the file has lists before or among its vertices, which cannot be passed over in bounded memory";
-        let kind = match header.order {
-            Some(order) => {
-                let bytes = |element: &Element| (element.size()? as u64).checked_mul(element.count as u64);
-                let bytes_before: Option<u64> = before.iter().map(bytes).sum();
-                let (Some(bytes_before), Some(size)) = (bytes_before, vertices.size()) else {
-                    return Err(unfit(lists));
-                };
-                Kind::Binary { bytes_before, size, offsets: scalars.map(|scalar| scalar.offset), number, order }
+        let lists =
+            || unfit("the file has lists before or among its vertices, which cannot be passed over in bounded memory");
+        let kind = if ply.encoding == Encoding::Ascii {
+            let offsets = columns.map(|column| record_size(&vertices, column));
+            if offsets.contains(&None) {
+                return Err(lists());
             }
-            None => {
-                let first_list = vertices.properties.iter().position(|property| property.length.is_some());
-                let columns = scalars.map(|scalar| scalar.index);
-                if first_list.is_some_and(|list| columns.iter().any(|&column| column > list)) {
-                    return Err(unfit(lists));
-                }
-                let lines_before = before.iter().map(|element| element.count as u64).sum();
-                Kind::Text { lines: header.lines as u64, lines_before, columns, number }
-            }
+            let lines_before = before().map(|element| element.count as u64).sum();
+            Kind::Text { lines: lines as u64, lines_before, columns }
+        } else {
+            let bytes =
+                |element: &ElementDef| (record_size(element, usize::MAX)? as u64).checked_mul(element.count as u64);
+            let bytes_before = before().map(bytes).sum::<Option<u64>>().ok_or_else(lists)?;
+            let size = record_size(&vertices, usize::MAX).ok_or_else(lists)?;
+            let offsets = columns.map(|column| record_size(&vertices, column).unwrap_or_default());
+            Kind::Binary { bytes_before, size, offsets }
         };
-        Ok(Self { header: bytes, count: vertices.count as u64, kind })
+        Ok(Self { header: bytes, count: vertices.count as u64, kind, ply, vertices, number })
     }
 
     fn of_npy(path: &Path, input: &mut impl BufRead) -> Result<Self, PointStreamError> {
@@ -95,11 +101,11 @@ impl Layout {
         header.resize(8 + length_size + length, 0);
         input.read_exact(&mut header[8 + length_size..]).map_err(truncated)?;
         let parsed = npyz::NpyHeader::from_reader(&header[..]).map_err(failed)?;
-        let (number, order) = match parsed.dtype().descr().trim_matches('\'') {
-            "<f4" => (Number::F32, ByteOrder::Little),
-            ">f4" => (Number::F32, ByteOrder::Big),
-            "<f8" => (Number::F64, ByteOrder::Little),
-            ">f8" => (Number::F64, ByteOrder::Big),
+        let (number, encoding) = match parsed.dtype().descr().trim_matches('\'') {
+            "<f4" => (ScalarType::Float, Encoding::BinaryLittleEndian),
+            ">f4" => (ScalarType::Float, Encoding::BinaryBigEndian),
+            "<f8" => (ScalarType::Double, Encoding::BinaryLittleEndian),
+            ">f8" => (ScalarType::Double, Encoding::BinaryBigEndian),
             other => return Err(unfit(format!("numbers of type {other} are no points; give f4 or f8"))),
         };
         let &[count, 3] = parsed.shape() else {
@@ -108,13 +114,17 @@ impl Layout {
         if parsed.order() == npyz::Order::Fortran && count > 1 {
             return Err(unfit("the array is in Fortran order; save it in C order".into()));
         }
-        let size = number.size();
-        let kind = Kind::Binary { bytes_before: 0, size: 3 * size, offsets: [0, size, 2 * size], number, order };
-        Ok(Self { header, count, kind })
+        let mut vertices = ElementDef::new("vertex".into());
+        for name in ["x", "y", "z"] {
+            vertices.properties.add(PropertyDef::new(name.into(), PropertyType::Scalar(number.clone())));
+        }
+        let size = scalar_size(&number);
+        let kind = Kind::Binary { bytes_before: 0, size: 3 * size, offsets: [0, size, 2 * size] };
+        Ok(Self { header, count, kind, ply: Header { encoding, ..Header::new() }, vertices, number })
     }
 
     pub(super) fn is_single_precision(&self) -> bool {
-        matches!(self.kind, Kind::Binary { number: Number::F32, .. } | Kind::Text { number: Number::F32, .. })
+        self.number == ScalarType::Float
     }
 
     /// Bytes, of text lines, of the header.

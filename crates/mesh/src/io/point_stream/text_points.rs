@@ -2,22 +2,7 @@
 
 use glam::DVec3;
 
-use crate::io::LineProblem;
 use crate::io::text::Words;
-
-/// The numbers in these `columns` of a line.
-pub(super) fn read_point(line: &[u8], columns: [usize; 3]) -> Result<DVec3, LineProblem> {
-    let mut point = DVec3::ZERO;
-    for (axis, column) in columns.into_iter().enumerate() {
-        let mut words = Words { rest: line };
-        let found = words.by_ref().take(column).count();
-        match words.next_number()? {
-            Some(number) if found == column => point[axis] = number,
-            _ => return Err(LineProblem::TooFewWords),
-        }
-    }
-    Ok(point)
-}
 
 /// Writes `line` with the numbers in these `columns` replaced, and everything else as it stands.
 ///

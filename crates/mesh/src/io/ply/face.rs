@@ -1,0 +1,179 @@
+//! The faces of a PLY file.
+
+use glam::{DVec2, DVec3, DVec4};
+use ply_rs_bw::ply::{BeginList, ElementDef, PropertyAccess, PropertyAccessResult};
+
+use super::body::Body;
+use super::vertex::Vertices;
+use crate::io::ParseError;
+use crate::io::by_corner::by_corner;
+use crate::io::polygon::triangulate;
+
+/// Triangles in the making.
+#[derive(Default)]
+pub(super) struct Triangles {
+    pub(super) vertices: Vec<[u32; 3]>,
+    pub(super) uvs: Vec<[DVec2; 3]>,
+    pub(super) normals: Vec<[DVec3; 3]>,
+    pub(super) colors: Vec<[DVec4; 3]>,
+    /// Of the face at hand: its vertices, their positions, and the corners of its triangles.
+    corners: Vec<u32>,
+    polygon: Vec<DVec3>,
+    split: Vec<[usize; 3]>,
+}
+
+impl Triangles {
+    pub(super) fn read(body: &mut Body<'_>, element: &ElementDef, vertices: &Vertices) -> Result<Self, ParseError> {
+        let mut triangles = Self::default();
+        // A corner takes a byte at least.
+        triangles.vertices.reserve_exact(element.count.min(body.rest().len() / 3));
+        body.read(element, |number, face: Face| triangles.push(number, &face, vertices))?;
+        if triangles.uvs.is_empty() {
+            triangles.uvs = by_corner(&triangles.vertices, &vertices.uvs);
+        }
+        if triangles.normals.is_empty() {
+            triangles.normals = by_corner(&triangles.vertices, &vertices.normals);
+        }
+        Ok(triangles)
+    }
+
+    /// Adds a polygon. A list of its own counts where it is complete, the attribute of its vertices otherwise.
+    fn push(&mut self, number: usize, face: &Face, vertices: &Vertices) -> Result<(), ParseError> {
+        self.corners.clear();
+        self.polygon.clear();
+        for index in face.indices.iter().map(|&i| i64::from(i)).chain(face.unsigned.iter().map(|&i| i64::from(i))) {
+            let position = usize::try_from(index).ok().and_then(|index| vertices.positions.get(index));
+            let out_of_range = ParseError::IndexOutOfRange { face: number, index, vertices: vertices.positions.len() };
+            self.polygon.push(*position.ok_or(out_of_range)?);
+            self.corners.push(index as u32);
+        }
+        if self.corners.len() < 3 {
+            return Err(ParseError::Malformed(format!("face {number} has fewer than three corners")));
+        }
+        self.split.clear();
+        triangulate(&self.polygon, |triangle| self.split.push(triangle));
+        self.vertices.extend(self.split.iter().map(|triangle| triangle.map(|corner| self.corners[corner])));
+
+        let uv = |list: &[f64]| <[f64; 2]>::try_from(list).ok().map(DVec2::from_array);
+        let normal = |list: &[f64]| <[f64; 3]>::try_from(list).ok().map(DVec3::from_array);
+        let color = |list: &[f64]| match *list {
+            [r, g, b] => Some(DVec4::new(r, g, b, 1.0)),
+            [r, g, b, alpha] => Some(DVec4::new(r, g, b, alpha)),
+            _ => None,
+        };
+        let Self { vertices: all, split, .. } = self;
+        let of_vertex = |vertex| vertices.uvs.get(vertex).copied().unwrap_or_default();
+        add_list(&mut self.uvs, all, split, &face.uvs, self.corners.len(), uv, of_vertex);
+        let of_vertex = |vertex| vertices.normals.get(vertex).copied().unwrap_or_default();
+        add_list(&mut self.normals, all, split, &face.normals, self.corners.len(), normal, of_vertex);
+        let of_vertex = |vertex| vertices.colors.get(vertex).copied().unwrap_or(DVec4::ONE);
+        add_list(&mut self.colors, all, split, &face.colors, self.corners.len(), color, of_vertex);
+        Ok(())
+    }
+}
+
+/// Adds the values of the last triangles, which `split` a face with a `list` of its own. No values are kept as long as no face
+/// has any.
+fn add_list<T>(
+    values: &mut Vec<[T; 3]>,
+    triangles: &[[u32; 3]],
+    split: &[[usize; 3]],
+    list: &[f64],
+    corners: usize,
+    make: impl Fn(&[f64]) -> Option<T>,
+    of_vertex: impl Fn(usize) -> T,
+) {
+    if list.is_empty() && values.is_empty() {
+        return;
+    }
+    let earlier = triangles.len() - split.len();
+    let without_list = |triangle: &[u32; 3]| triangle.map(|vertex| of_vertex(vertex as usize));
+    values.extend(triangles[values.len()..earlier].iter().map(without_list));
+    let components = list.len() / corners;
+    for (vertices, triangle) in triangles[earlier..].iter().zip(split) {
+        values.push(std::array::from_fn(|side| {
+            let own = components * triangle[side]..components * (triangle[side] + 1);
+            make(&list[own]).unwrap_or_else(|| of_vertex(vertices[side] as usize))
+        }));
+    }
+}
+
+/// A face as the library fills it.
+#[derive(Default)]
+struct Face {
+    indices: Vec<i32>,
+    /// The same, where the file has unsigned ones.
+    unsigned: Vec<u32>,
+    uvs: Vec<f64>,
+    normals: Vec<f64>,
+    colors: Vec<f64>,
+}
+
+impl Face {
+    fn set_indices<T: Into<i32>>(&mut self, name: &str, list: Vec<T>) -> PropertyAccessResult {
+        if !is_indices(name) {
+            return PropertyAccessResult::Ignored;
+        }
+        self.indices = list.into_iter().map(Into::into).collect();
+        PropertyAccessResult::Set
+    }
+
+    /// Sets a color, of which `full` is the full intensity.
+    fn set_color<T: Into<f64>>(&mut self, list: Vec<T>, full: f64) -> PropertyAccessResult {
+        self.colors = list.into_iter().map(|value| value.into() / full).collect();
+        PropertyAccessResult::Set
+    }
+
+    fn numbers(&mut self, name: &str) -> Option<&mut Vec<f64>> {
+        match name {
+            "texcoord" => Some(&mut self.uvs),
+            "normal" => Some(&mut self.normals),
+            "color" => Some(&mut self.colors),
+            _ => None,
+        }
+    }
+}
+
+fn is_indices(name: &str) -> bool {
+    matches!(name, "vertex_indices" | "vertex_index")
+}
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_list_char(&mut self, name: &str, list: Vec<i8>) -> PropertyAccessResult {
+        self.set_indices(name, list)
+    }
+
+    fn set_list_uchar(&mut self, name: &str, list: Vec<u8>) -> PropertyAccessResult {
+        if name == "color" { self.set_color(list, u8::MAX.into()) } else { self.set_indices(name, list) }
+    }
+
+    fn set_list_short(&mut self, name: &str, list: Vec<i16>) -> PropertyAccessResult {
+        self.set_indices(name, list)
+    }
+
+    fn set_list_ushort(&mut self, name: &str, list: Vec<u16>) -> PropertyAccessResult {
+        if name == "color" { self.set_color(list, u16::MAX.into()) } else { self.set_indices(name, list) }
+    }
+
+    fn begin_list_int(&mut self, name: &str, _: usize) -> BeginList<'_, i32> {
+        if is_indices(name) { BeginList::Fill(&mut self.indices) } else { BeginList::UseSetter }
+    }
+
+    fn begin_list_uint(&mut self, name: &str, _: usize) -> BeginList<'_, u32> {
+        if is_indices(name) { BeginList::Fill(&mut self.unsigned) } else { BeginList::UseSetter }
+    }
+
+    fn set_list_float(&mut self, name: &str, list: Vec<f32>) -> PropertyAccessResult {
+        let Some(numbers) = self.numbers(name) else { return PropertyAccessResult::Ignored };
+        *numbers = list.into_iter().map(f64::from).collect();
+        PropertyAccessResult::Set
+    }
+
+    fn begin_list_double(&mut self, name: &str, _: usize) -> BeginList<'_, f64> {
+        self.numbers(name).map_or(BeginList::UseSetter, BeginList::Fill)
+    }
+}
