@@ -42,7 +42,7 @@ use crate::{CornerAttributes, TriMesh};
 /// Reads the mesh file at `path`, and the files beside it that it refers to.
 ///
 /// Polygons are triangulated. Vertices that the format splits at seams are welded. Indices are in range and positions
-/// finite in what comes back; everything else is for [`TriMesh::check`].
+/// finite in what comes back; everything else is for [`TriMesh::check`]. A mesh without a name gets that of its file.
 ///
 /// # Errors
 /// [`ReadError`], naming the file and what in it is at fault.
@@ -52,8 +52,13 @@ pub fn read(path: impl AsRef<Path>) -> Result<TriMesh, ReadError> {
     let failed = |source| ReadError::Io { path: path.to_owned(), source };
     let bytes = std::fs::read(path).map_err(failed)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    parse(format, &bytes, &|relative| std::fs::read(folder.join(relative)))
-        .map_err(|source| ReadError::Parse { path: path.to_owned(), source: Box::new(source) })
+    let mut mesh = parse(format, &bytes, &|relative| std::fs::read(folder.join(relative)))
+        .map_err(|source| ReadError::Parse { path: path.to_owned(), source: Box::new(source) })?;
+    if mesh.assets.names.mesh.is_empty() {
+        let stem = path.file_stem().unwrap_or_default();
+        mesh.assets.names.mesh = stem.to_string_lossy().into_owned();
+    }
+    Ok(mesh)
 }
 
 /// Reads a mesh from memory, as [`read`] does from a file. References to other files are errors.

@@ -37,7 +37,7 @@ mod tri_mesh;
 mod winding_number;
 
 pub use aabb::Aabb;
-pub use assets::{Assets, GltfAssets};
+pub use assets::{Assets, GltfAssets, Names};
 pub use block::{DistanceBlock, LANES, PointBlock};
 pub use bvh::{Bvh, BvhError, ClosestPoint, Feature};
 pub use check::Check;

@@ -277,3 +277,25 @@ fn faulty_documents_get_clear_errors() {
     }
     assert_eq!(error(&json!({ "asset": { "version": "2.0" } })), "the file has no triangles");
 }
+
+#[test]
+fn names_are_carried() {
+    let mut named = document();
+    named["meshes"][0]["name"] = "bell".into();
+    named["nodes"][0]["name"] = "tower".into();
+    named["scenes"][0]["name"] = "village".into();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("file.gltf");
+    let json_of = |mesh: &TriMesh| -> Value { serde_json::from_slice(&written(Format::Gltf, mesh)).unwrap() };
+    let names_of = |json: &Value| ["meshes", "nodes", "scenes"].map(|part| json[part][0]["name"].clone());
+    std::fs::write(&path, named.to_string()).unwrap();
+    assert_eq!(names_of(&json_of(&io::read(&path).unwrap())), ["bell", "tower", "village"]);
+    // Without names of its own, the mesh and its node are called after the file.
+    std::fs::write(&path, document().to_string()).unwrap();
+    assert_eq!(names_of(&json_of(&io::read(&path).unwrap())), [json!("file"), json!("file"), Value::Null]);
+    assert_eq!(names_of(&json_of(&read(&document()))), [Value::Null, Value::Null, Value::Null]);
+    // Of two instances neither is what is written.
+    named["nodes"] = json!([{ "mesh": 0, "name": "tower" }, { "mesh": 0, "name": "gate", "translation": [5, 0, 0] }]);
+    named["scenes"][0]["nodes"] = json!([0, 1]);
+    assert_eq!(names_of(&json_of(&read(&named))), [Value::Null, Value::Null, json!("village")]);
+}

@@ -27,6 +27,7 @@ pub(in crate::io) fn parse(bytes: &[u8], resolve: Resolve<'_>) -> Result<(TriMes
     // Corners are six times as many as vertices; not those of normals that triangles have to lend.
     let has_finite_corners = soup.has_finite_attributes() && !soup.lacks_normals();
     let mut mesh = soup.into_mesh(&document.json).welded();
+    mesh.assets.names = document.names(&instances);
     mesh.assets.gltf = document.carried_assets(skin, resolve)?.map(Arc::new);
     Ok((mesh, has_finite_corners))
 }

@@ -4,11 +4,13 @@ use ::gltf::json::scene::Node;
 use glam::{DMat4, DQuat, DVec3};
 
 use super::document::{Document, malformed};
+use crate::Names;
 use crate::io::ParseError;
 
 /// A use of a mesh.
 pub(super) struct Instance {
     pub(super) mesh: usize,
+    pub(super) node: Option<usize>,
     pub(super) skin: Option<usize>,
     /// Identity for a skinned mesh, which its joints alone place.
     pub(super) world_from_mesh: DMat4,
@@ -20,7 +22,7 @@ impl Document<'_> {
     pub(super) fn instances(&self) -> Result<Vec<Instance>, ParseError> {
         let nodes = &self.root.nodes;
         if nodes.is_empty() {
-            let place = |mesh| Instance { mesh, skin: None, world_from_mesh: DMat4::IDENTITY };
+            let place = |mesh| Instance { mesh, node: None, skin: None, world_from_mesh: DMat4::IDENTITY };
             return Ok((0..self.root.meshes.len()).map(place).collect());
         }
         let mut instances = Vec::new();
@@ -36,12 +38,29 @@ impl Document<'_> {
             if let Some(mesh) = node.mesh {
                 let skin = node.skin.map(|skin| skin.value());
                 let world_from_mesh = if skin.is_some() { DMat4::IDENTITY } else { world_from_node };
-                instances.push(Instance { mesh: mesh.value(), skin, world_from_mesh });
+                instances.push(Instance { mesh: mesh.value(), node: Some(number), skin, world_from_mesh });
             }
             let children = node.children.iter().flatten().rev();
             waiting.extend(children.map(|child| (child.value(), world_from_node)));
         }
         Ok(instances)
+    }
+
+    /// The names of what is shown, where it is one: a mesh made of several has the name of none.
+    pub(super) fn names(&self, instances: &[Instance]) -> Names {
+        let scene = self.root.scenes.get(self.root.scene.map_or(0, |scene| scene.value()));
+        let (mesh, node) = match instances {
+            [only] => (
+                self.root.meshes.get(only.mesh).and_then(|mesh| mesh.name.clone()),
+                only.node.and_then(|node| self.root.nodes.get(node)?.name.clone()),
+            ),
+            _ => (None, None),
+        };
+        Names {
+            mesh: mesh.unwrap_or_default(),
+            node: node.unwrap_or_default(),
+            scene: scene.and_then(|scene| scene.name.clone()).unwrap_or_default(),
+        }
     }
 
     pub(super) fn root_nodes(&self) -> Result<Vec<usize>, ParseError> {

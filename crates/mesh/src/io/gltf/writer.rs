@@ -50,8 +50,12 @@ impl Document {
         let primitives = document.push_primitives(mesh, &split, &attributes);
         let json = &mut document.0.json;
         json.insert("asset".into(), json!({ "version": "2.0", "generator": "isochore" }));
-        json.insert("meshes".into(), json!([{ "primitives": primitives }]));
+        let names = &mesh.assets.names;
+        let mut shown = json!({ "primitives": primitives });
+        give_name(&mut shown, &names.mesh);
+        json.insert("meshes".into(), json!([shown]));
         let mut node = json!({ "mesh": 0 });
+        give_name(&mut node, if names.node.is_empty() { &names.mesh } else { &names.node });
         if has_skin {
             node["skin"] = 0.into();
         }
@@ -63,6 +67,7 @@ impl Document {
                 json.insert("scene".into(), 0.into());
             }
         }
+        give_name(&mut json["scenes"][0], &names.scene);
         document.0.bytes.resize(document.0.bytes.len().next_multiple_of(4), 0);
         let length = document.0.bytes.len();
         // The lengths in a binary file have 32 bits; the JSON before the buffer is small beside this reserve.
@@ -177,5 +182,12 @@ impl Document {
     fn push_accessor(&mut self, view: Value, component: u32, count: usize, kind: &str) -> Value {
         let accessor = json!({ "bufferView": view, "componentType": component, "count": count, "type": kind });
         push(&mut self.0.json, "accessors", accessor)
+    }
+}
+
+/// Names a part of the document, which stays without one where `name` is empty.
+fn give_name(part: &mut Value, name: &str) {
+    if !name.is_empty() {
+        part["name"] = name.into();
     }
 }
