@@ -4,6 +4,7 @@ mod gltf;
 mod obj;
 mod oracles;
 mod ply;
+mod point_stream;
 mod round_trip;
 mod stl_off;
 mod untrusted;

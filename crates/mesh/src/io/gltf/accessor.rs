@@ -39,38 +39,44 @@ impl Document<'_> {
         make: impl Fn([f64; N]) -> T,
     ) -> Result<Vec<T>, ParseError> {
         let is_normalized = self.accessor(index)?.normalized;
-        match self.component(index)?.0 {
-            // Nearly all accessors are such ones, and need not ask of every number what it is.
-            ComponentType::F32 => self.elements(index, N, |bytes| {
-                let numbers = bytes.as_chunks().0;
-                make(std::array::from_fn(|i| single(numbers[i])))
-            }),
-            component => self.elements(index, N, |bytes| {
-                let size = component.size();
-                make(std::array::from_fn(|i| number(component, is_normalized, &bytes[i * size..])))
-            }),
+        let component = self.component(index)?.0;
+        self.expect_components(index, N)?;
+        // Nearly all accessors are such ones, and need not ask of every number what it is.
+        if component == ComponentType::F32
+            && let Some(bytes) = self.packed(index, 4 * N)?
+        {
+            let vectors = bytes.as_chunks().0.as_chunks::<N>().0;
+            return Ok(vectors.iter().map(|vector| make(vector.map(single))).collect());
         }
+        self.elements(index, N, |bytes| {
+            let size = component.size();
+            make(std::array::from_fn(|i| number(component, is_normalized, &bytes[i * size..])))
+        })
     }
+
     /// Whole numbers, `N` at a time; those left over are left out.
     pub(super) fn indices<const N: usize>(&self, index: usize) -> Result<Vec<[u32; N]>, ParseError> {
         let component = match self.component(index)? {
             (component @ (ComponentType::U8 | ComponentType::U16 | ComponentType::U32), _) => component,
             _ => return Err(malformed(format!("accessor {index} should hold unsigned integers"))),
         };
-        let accessor = self.accessor(index)?;
-        if let (ComponentType::U32, Some(view), None) = (component, accessor.buffer_view, &accessor.sparse) {
-            self.expect_components(index, 1)?;
-            let layout = self.accessor_layout(index, accessor, view.value(), 4)?;
-            if layout.stride == 4 {
-                let (numbers, _) = layout.bytes[..4 * layout.count].as_chunks::<4>();
-                let mut groups = vec![[0; N]; layout.count / N];
-                let places = groups.as_flattened_mut().iter_mut().zip(numbers);
-                places.for_each(|(place, number)| *place = u32::from_le_bytes(*number));
-                return Ok(groups);
-            }
+        self.expect_components(index, 1)?;
+        if component == ComponentType::U32
+            && let Some(bytes) = self.packed(index, 4)?
+        {
+            let groups = bytes.as_chunks().0.as_chunks::<N>().0;
+            return Ok(groups.iter().map(|group| group.map(u32::from_le_bytes)).collect());
         }
         let numbers: Vec<u32> = self.elements(index, 1, |bytes| number(component, false, bytes) as u32)?;
         Ok(numbers.as_chunks().0.to_vec())
+    }
+
+    /// Bytes of all elements, where each of this size follows the one before and none is replaced by a sparse one.
+    fn packed(&self, index: usize, size: usize) -> Result<Option<&[u8]>, ParseError> {
+        let accessor = self.accessor(index)?;
+        let (Some(view), None) = (accessor.buffer_view, &accessor.sparse) else { return Ok(None) };
+        let layout = self.accessor_layout(index, accessor, view.value(), size)?;
+        Ok((layout.stride == size).then(|| &layout.bytes[..size * layout.count]))
     }
 
     /// What `make` makes of the bytes of each element, of the given number of components; zeros where the file has none.
@@ -81,7 +87,6 @@ impl Document<'_> {
         make: impl Fn(&[u8]) -> T,
     ) -> Result<Vec<T>, ParseError> {
         let accessor = self.accessor(index)?;
-        self.expect_components(index, components)?;
         let size = components * self.component(index)?.1;
         let mut elements: Vec<T> = match accessor.buffer_view {
             Some(view) => {
