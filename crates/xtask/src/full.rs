@@ -1,17 +1,19 @@
-//! What is too heavy for every run of the tests: a browser, and Blender.
+//! What is too heavy for every run of the tests: the sanitizer, a browser, and Blender.
 
 use std::process::Command;
 
 use crate::{
     environment::{install, interpreter},
+    sanitizer,
     shell::{TaskResult, cargo, run, workspace},
 };
 
 /// Blender as a Python module, at the last version for this Python.
 const BLENDER: [&str; 2] = ["bpy==5.0.1", "pytest==9.2.0"];
 
-/// Runs the tests in the browser and those of the Blender add-on.
+/// Runs tests under the sanitizer, those in the browser and those of the Blender add-on.
 pub(crate) fn run_all() -> TaskResult {
+    sanitizer::run_tests()?;
     // The task itself is compiled with what makes bindings, which nothing else needs.
     run(&mut cargo(&[
         "run",

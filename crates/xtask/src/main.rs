@@ -14,6 +14,7 @@ mod gallery;
 mod instructions;
 mod oracle;
 mod python;
+mod sanitizer;
 mod shell;
 mod size;
 mod test;
@@ -45,7 +46,8 @@ const TASKS: &[Task] = &[
     ("capi", "install the library for C with its header under a prefix, by default target/capi", capi::install),
     ("python", "install the Python package into the target folder and run its tests", python::test_package),
     ("instructions", "count the instructions of the hot loops anew, which a test compares", instructions::count_all),
-    ("full", "what is too heavy for every run: tests in a browser and in Blender", full::run_all),
+    ("full", "what is too heavy for every run: sanitizer, browser and Blender", full::run_all),
+    ("sanitizer", "run the tests around unsafe code under AddressSanitizer", sanitizer::run_tests),
     #[cfg(feature = "browser")]
     ("browser", "build the package for browsers and run its pages in Chromium", wasm::test_in_browser),
     ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
