@@ -17,6 +17,11 @@ pub trait Field: Debug + Send + Sync {
     /// Box outside which the field is zero; infinite where it acts everywhere.
     fn bounds(&self) -> Aabb;
 
+    /// Boxes outside all of which the field is zero, within [`bounds`](Self::bounds): one for each part that lies apart.
+    fn parts(&self) -> Vec<Aabb> {
+        vec![self.bounds()]
+    }
+
     /// World from body for one of the rigid bodies that [`FieldBlock::core`] names.
     fn core_pose(&self, _core: u32) -> Pose {
         Pose::IDENTITY

@@ -85,6 +85,10 @@ impl Field for MaskedInstant {
         self.field.bounds()
     }
 
+    fn parts(&self) -> Vec<Aabb> {
+        self.field.parts()
+    }
+
     fn core_pose(&self, core: u32) -> Pose {
         self.field.core_pose(core)
     }

@@ -95,6 +95,13 @@ impl MirroredInstant {
 
     /// The field itself, with the center of its gauge drawn onto the planes.
     fn evaluate_drawn(&self, points: &PointBlock, out: &mut FieldBlock) {
+        // Near one image of the field all points are beyond the others.
+        let bounds = self.field.bounds();
+        let clearance: [f64; LANES] = std::array::from_fn(|lane| bounds.distance(points.get(lane)));
+        if clearance.iter().all(|&clearance| clearance > 0.0) {
+            (0..LANES).for_each(|lane| out.set_outside(lane, clearance[lane]));
+            return;
+        }
         self.field.evaluate_into(points, out);
         let Some((gauge, center)) = self.gauge.filter(|(gauge, center)| gauge.center != *center) else { return };
         for lane in (0..LANES).filter(|&lane| out.clearance[lane] == 0.0) {
@@ -136,12 +143,18 @@ impl Field for MirroredInstant {
     }
 
     fn bounds(&self) -> Aabb {
-        let bounds = self.field.bounds();
-        if !(bounds.min.is_finite() && bounds.max.is_finite()) {
-            return bounds;
+        self.parts().into_iter().fold(Aabb::EMPTY, Aabb::union)
+    }
+
+    fn parts(&self) -> Vec<Aabb> {
+        let mut parts = self.field.parts();
+        if !parts.iter().all(|part| part.min.is_finite() && part.max.is_finite()) {
+            return vec![self.field.bounds()];
         }
-        self.planes.iter().fold(bounds, |bounds, plane| {
-            bounds.union(Aabb::of(bounds.corners().map(|corner| plane.reflect_point(corner))))
-        })
+        for plane in &*self.planes {
+            let image = |part: &Aabb| Aabb::of(part.corners().map(|corner| plane.reflect_point(corner)));
+            parts.extend(parts.iter().map(image).collect::<Vec<_>>());
+        }
+        parts
     }
 }

@@ -211,6 +211,12 @@ impl EditMesh {
         self.fan(from).find(|&half_edge| self.end(half_edge) == to)
     }
 
+    /// Makes room for more vertices and triangles.
+    pub fn reserve(&mut self, vertices: usize, triangles: usize) {
+        self.leaving.reserve(vertices);
+        self.triangles.reserve(triangles);
+    }
+
     /// Begins to record edits.
     pub fn begin(&mut self) -> usize {
         self.triangles.begin();

@@ -6,6 +6,7 @@ mod query;
 mod tests;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 pub use query::SurfaceHit;
 
@@ -18,10 +19,13 @@ const LEAF_TRIANGLES: u32 = 8;
 /// Triangles at which a leaf is cut in two. Less than twice [`LEAF_TRIANGLES`] would cut leaves that have hardly grown.
 const FULL_LEAF: u32 = 16;
 
+/// Leaves whose boxes one task makes at least. Larger leaves threads idle; smaller spends time on handing out tasks.
+const LEAVES_PER_TASK: usize = 256;
+
 const NONE: u32 = u32::MAX;
 
-/// Boxes over triangles, which are told by number; where their corners are, a function tells, which gives none for those that are
-/// not there.
+/// Boxes over triangles, which are told by number; where these are, a function tells, which gives nothing for those that are not
+/// there.
 #[derive(Debug, Clone)]
 pub struct SurfaceTree {
     nodes: Vec<Node>,
@@ -64,9 +68,9 @@ impl SurfaceTree {
             tree.copy(&Bvh::new(positions, triangles)?);
         }
         tree.is_due = vec![false; tree.nodes.len()];
-        let corners = |triangle: u32| Some(triangles[triangle as usize].map(|vertex| positions[vertex as usize]));
+        let bounds = |triangle: u32| Aabb::of(triangles[triangle as usize].map(|vertex| positions[vertex as usize]));
         for node in (0..tree.nodes.len()).rev() {
-            tree.nodes[node].bounds = tree.tight_bounds(node, &corners);
+            tree.nodes[node].bounds = tree.tight_bounds(node, &bounds);
         }
         Ok(tree)
     }
@@ -132,14 +136,20 @@ impl SurfaceTree {
         self.leaf_of.is_empty()
     }
 
+    /// Makes room for `additional` more triangles.
+    pub fn reserve(&mut self, additional: usize) {
+        self.leaf_of.reserve(additional);
+        self.following.reserve(additional);
+        // Leaves are cut when they hold FULL_LEAF triangles, into halves, and each cut makes two nodes.
+        let nodes = 2 * additional.div_ceil(FULL_LEAF as usize / 2);
+        self.nodes.reserve(nodes);
+        self.is_due.reserve(nodes);
+    }
+
     /// Makes the number of triangles `count`: takes in the ones that are new, and lets go those beyond it. Where `near` knows
-    /// neighbors of a new triangle, numbers out of range among them, its place is found without a search.
-    pub fn resize(
-        &mut self,
-        count: usize,
-        corners: &impl Fn(u32) -> Option<[DVec3; 3]>,
-        near: &impl Fn(u32) -> [u32; 3],
-    ) {
+    /// neighbors of a new triangle, numbers out of range among them, its place is found without a search. `bounds` tells the box of
+    /// a triangle, empty where it is not there.
+    pub fn resize(&mut self, count: usize, bounds: &impl Fn(u32) -> Aabb, near: &impl Fn(u32) -> [u32; 3]) {
         for triangle in count..self.leaf_of.len() {
             let leaf = self.leaf_of[triangle];
             self.unlink(triangle as u32);
@@ -150,20 +160,19 @@ impl SurfaceTree {
         self.following.resize(count, NONE);
         for triangle in known as u32..count as u32 {
             let leaf_of = |&neighbor: &u32| self.leaf_of.get(neighbor as usize).copied().filter(|&leaf| leaf != NONE);
-            let leaf = near(triangle).iter().find_map(leaf_of).unwrap_or_else(|| self.descend(triangle, corners));
+            let leaf = near(triangle).iter().find_map(leaf_of).unwrap_or_else(|| self.descend(triangle, bounds));
             self.link(triangle, leaf);
             self.make_due(leaf);
             if self.nodes[leaf as usize].count >= FULL_LEAF {
-                self.cut(leaf, corners);
+                self.cut(leaf, bounds);
             }
         }
     }
 
     /// The leaf that a triangle fits in best.
-    fn descend(&mut self, triangle: u32, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) -> u32 {
-        let found = corners(triangle);
-        let center = found.map_or(DVec3::ZERO, |[a, b, c]| (a + b + c) / 3.0);
-        let bounds = Aabb::of(found.into_iter().flatten());
+    fn descend(&mut self, triangle: u32, bounds: &impl Fn(u32) -> Aabb) -> u32 {
+        let bounds = bounds(triangle);
+        let center = center(bounds);
         let mut node = 0;
         loop {
             // Boxes grow at once, so that the next triangle finds its way by them.
@@ -184,10 +193,9 @@ impl SurfaceTree {
     }
 
     /// Makes a leaf the parent of two, halved along the longest side of the box of the centers.
-    fn cut(&mut self, leaf: u32, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) {
-        let center = |triangle: u32| corners(triangle).map_or(DVec3::ZERO, |[a, b, c]| (a + b + c) / 3.0);
+    fn cut(&mut self, leaf: u32, bounds: &impl Fn(u32) -> Aabb) {
         let mut triangles: Vec<(DVec3, u32)> =
-            self.of_leaf(leaf).map(|triangle| (center(triangle), triangle)).collect();
+            self.of_leaf(leaf).map(|triangle| (center(bounds(triangle)), triangle)).collect();
         let size = Aabb::of(triangles.iter().map(|&(center, _)| center)).size();
         let axis = size.max_position();
         triangles.sort_unstable_by(|a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
@@ -200,7 +208,7 @@ impl SurfaceTree {
             self.link(triangle, child + u32::from(rank >= half));
         }
         for node in [child, child + 1] {
-            self.nodes[node as usize].bounds = self.tight_bounds(node as usize, corners);
+            self.nodes[node as usize].bounds = self.tight_bounds(node as usize, bounds);
         }
     }
 
@@ -215,33 +223,37 @@ impl SurfaceTree {
 
     /// Makes the boxes anew that hold any of the triangles `changed`, which have moved, gone, or come back, and those that
     /// [`resize`](Self::resize) left for this call.
-    pub fn update(&mut self, changed: &[u32], corners: &impl Fn(u32) -> Option<[DVec3; 3]>) {
+    pub fn update(&mut self, changed: &[u32], bounds: &(impl Fn(u32) -> Aabb + Sync)) {
         for &triangle in changed {
             self.make_due(self.leaf_of[triangle as usize]);
         }
         let mut due = std::mem::take(&mut self.due);
-        // Children come behind their parents.
-        due.sort_unstable_by(|a, b| b.cmp(a));
-        for &node in &due {
-            self.is_due[node as usize] = false;
-            self.nodes[node as usize].bounds = self.tight_bounds(node as usize, corners);
-        }
-        due.clear();
+        let (leaves, mut branches): (Vec<u32>, Vec<u32>) =
+            due.drain(..).partition(|&node| self.nodes[node as usize].child == NONE);
         self.due = due;
+        let boxes = leaves.par_iter().with_min_len(LEAVES_PER_TASK);
+        let boxes: Vec<Aabb> = boxes.map(|&leaf| self.tight_bounds(leaf as usize, bounds)).collect();
+        for (&leaf, bounds) in leaves.iter().zip(boxes) {
+            self.is_due[leaf as usize] = false;
+            self.nodes[leaf as usize].bounds = bounds;
+        }
+        // Children come behind their parents.
+        branches.sort_unstable_by(|a, b| b.cmp(a));
+        for node in branches {
+            self.is_due[node as usize] = false;
+            self.nodes[node as usize].bounds = self.tight_bounds(node as usize, bounds);
+        }
     }
 
-    fn tight_bounds(&self, node: usize, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) -> Aabb {
-        let node = &self.nodes[node];
-        match node.child {
-            NONE => Aabb::of(
-                std::iter::successors((node.first != NONE).then_some(node.first), |&triangle| {
-                    let following = self.following[triangle as usize];
-                    (following != NONE).then_some(following)
-                })
-                .filter_map(corners)
-                .flatten(),
-            ),
+    fn tight_bounds(&self, node: usize, bounds: &impl Fn(u32) -> Aabb) -> Aabb {
+        match self.nodes[node].child {
+            NONE => self.of_leaf(node as u32).map(bounds).fold(Aabb::EMPTY, Aabb::union),
             child => self.nodes[child as usize].bounds.union(self.nodes[child as usize + 1].bounds),
         }
     }
+}
+
+/// The center of a box; that of an empty one is anywhere.
+fn center(bounds: Aabb) -> DVec3 {
+    if bounds.min.x <= bounds.max.x { bounds.center() } else { DVec3::ZERO }
 }

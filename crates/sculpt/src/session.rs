@@ -14,8 +14,7 @@
 //! ```
 //! use std::sync::Arc;
 //!
-//! use glam::DVec3;
-//! use isochore_field::Pose;
+//! //! use isochore_field::Pose;
 //! use isochore_mesh::{Silent, primitives::icosphere};
 //! use isochore_sculpt::{Meshes, recipe, session::{Session, SessionOptions, SessionTool, StrokeOptions}};
 //!
@@ -39,6 +38,7 @@
 //! ```
 
 mod buffers;
+mod carrying;
 mod editing;
 mod error;
 mod export;
@@ -53,7 +53,6 @@ mod receipt;
 mod refinement;
 mod selection;
 mod shading;
-mod stopwatch;
 mod stroke;
 mod surface;
 mod tool;
@@ -61,7 +60,6 @@ mod volume;
 
 use std::sync::Arc;
 
-use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::{Aabb, ClosedMesh, NONE, TriMesh};
 
@@ -81,8 +79,6 @@ use crate::{
 };
 use history::{Step, Steps};
 use log::LoggedStroke;
-use refinement::Pass;
-use stopwatch::Stopwatch;
 use stroke::{ActiveStroke, Segment};
 use surface::Surface;
 
@@ -205,66 +201,7 @@ impl Session {
         if let Some(mask) = &self.mask {
             stroke = stroke.masked(mask, self.opened_bounds, self.options.step)?;
         }
-        Ok(Segment { reach: stroke.reach(), stroke })
-    }
-
-    /// Carries what the tool touches along one segment, and refines there.
-    fn carry(&mut self, segment: Segment, done: &mut MoveReceipt) -> Result<(), SessionError> {
-        let Some(stroke) = &mut self.stroke else { return Err(SessionError::NoStroke) };
-        let surface = &mut self.surface;
-        let mut watch = Stopwatch::start();
-        let refine = stroke.refine.clone();
-        let mut edited = Vec::new();
-
-        let mut near = surface.triangles_in(segment.reach);
-        done.seconds.select += watch.lap();
-        if let Some(options) = &refine {
-            let mut pass = Pass { surface, stroke, frozen: &self.frozen, edited: &mut edited, done };
-            pass.resolve(&near, options, &segment);
-            near.extend(&edited);
-        }
-        done.seconds.refine += watch.lap();
-
-        let mut vertices = surface.vertices_in(&near, segment.reach);
-        vertices.extend(self.loose.iter().filter(|&&vertex| segment.reach.distance(surface.position(vertex)) == 0.0));
-        done.seconds.select += watch.lap();
-
-        let mut carried: Vec<DVec3> = vertices.iter().map(|&vertex| surface.position(vertex)).collect();
-        done.evaluations += segment.stroke.carry(&mut carried);
-        let overflow = vertices.iter().zip(&carried).find(|(_, position)| !position.is_finite());
-        let overflow = overflow.map(|(&vertex, _)| vertex);
-        let mut moved = Vec::with_capacity(vertices.len());
-        if overflow.is_none() {
-            for (&vertex, &position) in vertices.iter().zip(&carried) {
-                let bits = |point: DVec3| point.to_array().map(f64::to_bits);
-                if bits(surface.position(vertex)) != bits(position) {
-                    surface.positions.set(vertex, position);
-                    moved.push(vertex);
-                }
-            }
-            stroke.way.push(segment);
-        }
-        done.moved_vertices = moved.len();
-        done.seconds.flow += watch.lap();
-
-        let mut changed = surface.triangles_around(&moved, &[]);
-        stroke.note_moved(&changed, surface.corners.items().len());
-        if let Some(options) = refine.as_ref().filter(|_| overflow.is_none()) {
-            let mut pass = Pass { surface, stroke, frozen: &self.frozen, edited: &mut edited, done };
-            pass.improve(&changed, options);
-        }
-        if !edited.is_empty() {
-            edited.extend(&changed);
-            changed = surface.triangles_around(&[], &edited);
-        }
-        done.seconds.refine += watch.lap();
-
-        surface.update_tree(&changed);
-        done.seconds.index += watch.lap();
-        let shaded = surface.vertices_of(&changed);
-        surface.write_buffers(&moved, &shaded);
-        done.seconds.buffers += watch.lap();
-        overflow.map_or(Ok(()), |vertex| Err(SessionError::Overflow { vertex }))
+        Ok(Segment::new(stroke))
     }
 
     /// Ends the stroke, which can then be undone and is in the log. A stroke of fewer than two poses did nothing and leaves nothing.

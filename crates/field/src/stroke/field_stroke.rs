@@ -40,10 +40,28 @@ struct Span {
 /// A span cut into steps.
 #[derive(Debug, Clone)]
 struct Leg {
-    /// The field at the beginning and in the middle of every step, and at the end of the last.
-    instants: Vec<Arc<dyn Field>>,
+    /// The beginning and the middle of every step, and the end of the last.
+    instants: Vec<Instant>,
     step_time: f64,
     approach_speed: f64,
+}
+
+/// The field at one time, and the boxes outside which it is zero.
+#[derive(Debug, Clone)]
+struct Instant {
+    field: Arc<dyn Field>,
+    parts: Vec<Aabb>,
+}
+
+impl Instant {
+    fn new(field: Box<dyn Field>) -> Self {
+        Self { parts: field.parts(), field: Arc::from(field) }
+    }
+
+    /// How far a point is from the nearest part at least; zero within one.
+    fn clearance(&self, point: DVec3) -> f64 {
+        self.parts.iter().map(|part| part.distance(point)).fold(f64::INFINITY, f64::min)
+    }
 }
 
 impl FieldStroke {
@@ -147,7 +165,7 @@ impl Leg {
             return Err(StrokeError::TooManySteps { key, steps: count });
         }
         let halves = 2 * count as usize;
-        let instants = (0..=halves).map(|half| Arc::from(field.at(end * (half as f64 / halves as f64)))).collect();
+        let instants = (0..=halves).map(|half| Instant::new(field.at(end * (half as f64 / halves as f64)))).collect();
         Ok(Self { instants, step_time: end / count, approach_speed: field.approach_speed() })
     }
 
@@ -160,11 +178,11 @@ impl Leg {
         wake.fill(0);
         let mut due = Vec::new();
         for step in 0..self.steps() {
-            let bounds = self.instants[2 * step].bounds();
+            let instant = &self.instants[2 * step];
             due.clear();
             for (index, (point, wake)) in points.iter().zip(&mut *wake).enumerate() {
                 if *wake <= step {
-                    match self.resting_steps(bounds.distance(*point), *point) {
+                    match self.resting_steps(instant.clearance(*point), *point) {
                         0 => due.push(index as u32),
                         sleep => *wake = step + sleep,
                     }
@@ -179,7 +197,7 @@ impl Leg {
 
     /// Takes the points named in `block`, which stand where they are at the beginning of `step`, to its end.
     fn step_block(&self, step: usize, block: &[u32], points: &mut [DVec3], wake: &mut [usize]) -> u64 {
-        let [begin, middle, end] = [0, 1, 2].map(|half| &*self.instants[2 * step + half]);
+        let [begin, middle, end] = [0, 1, 2].map(|half| &*self.instants[2 * step + half].field);
         let mut carried = Rk4Block::new(FieldBlock::ZERO);
         carried.start = PointBlock::gather(&block.iter().map(|&index| points[index as usize]).collect::<Vec<_>>());
         begin.evaluate_into(&carried.start, &mut carried.stages[0]);
@@ -227,7 +245,8 @@ impl Leg {
     }
 
     fn reach(&self) -> Aabb {
-        let bounds = self.instants.iter().map(|field| field.bounds()).fold(Aabb::EMPTY, Aabb::union);
+        let bounds =
+            self.instants.iter().flat_map(|instant| instant.parts.iter().copied()).fold(Aabb::EMPTY, Aabb::union);
         // Instants are half a step apart, so no time is more than a quarter from one.
         bounds.expanded(0.25 * self.approach_speed * self.step_time)
     }
@@ -235,11 +254,11 @@ impl Leg {
     fn may_touch(&self, center: DVec3, radius: f64) -> bool {
         let mut step = 0;
         while step <= self.steps() {
-            let field = &self.instants[2 * step];
-            let mut clearance = field.bounds().distance(center) - radius;
+            let instant = &self.instants[2 * step];
+            let mut clearance = instant.clearance(center) - radius;
             if clearance <= 0.0 {
                 let mut block = FieldBlock::ZERO;
-                field.evaluate_into(&PointBlock::splat(center), &mut block);
+                instant.field.evaluate_into(&PointBlock::splat(center), &mut block);
                 clearance = block.clearance[0] - radius;
             }
             let sleep = self.resting_steps(clearance, center);

@@ -20,12 +20,17 @@ pub struct SurfaceHit {
 
 impl SurfaceTree {
     /// Calls `visit` with every triangle whose leaf touches `bounds`, in no particular order; some of them may not.
-    pub fn visit_box(&self, bounds: Aabb, mut visit: impl FnMut(u32)) {
-        let touches = |other: Aabb| other.min.cmple(bounds.max).all() && other.max.cmpge(bounds.min).all();
+    pub fn visit_box(&self, bounds: Aabb, visit: impl FnMut(u32)) {
+        self.visit(|other| bounds.touches(other), visit);
+    }
+
+    /// Calls `visit` with every triangle of the leaves whose box, and every box around it, `may_touch` what is looked for, in no
+    /// particular order.
+    pub fn visit(&self, may_touch: impl Fn(Aabb) -> bool, mut visit: impl FnMut(u32)) {
         let mut stack = vec![0];
         while let Some(index) = stack.pop() {
             let node = &self.nodes[index as usize];
-            if touches(node.bounds) {
+            if may_touch(node.bounds) {
                 if node.child == NONE {
                     self.of_leaf(index).for_each(&mut visit);
                 } else {

@@ -77,6 +77,6 @@ pub struct InteractiveRefinement {
 
 impl Default for InteractiveRefinement {
     fn default() -> Self {
-        Self { longest: None, collapse: 0.0625, flip: true, max_triangles: 20_000_000, keep: Vec::new() }
+        Self { longest: None, collapse: 0.25, flip: true, max_triangles: 20_000_000, keep: Vec::new() }
     }
 }

@@ -13,6 +13,8 @@ pub struct MoveReceipt {
     pub flipped_edges: usize,
     /// Whether the limit on triangles kept edges from being split.
     pub is_limited: bool,
+    /// Edges that stay too long because the stroke has stretched the surface there too far for a split to help.
+    pub refused_splits: usize,
     /// Evaluations of the field.
     pub evaluations: u64,
     /// Wall time by stage.
@@ -58,6 +60,8 @@ pub struct StrokeReceipt {
     pub flipped_edges: usize,
     /// Whether the limit on triangles kept edges from being split.
     pub is_limited: bool,
+    /// The most edges in any move that stayed too long because the stroke has stretched the surface there too far for a split to help.
+    pub refused_splits: usize,
     /// Evaluations of the fields.
     pub evaluations: u64,
     /// What became of the volume; none where the surface is open.

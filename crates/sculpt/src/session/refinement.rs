@@ -5,10 +5,14 @@ mod flips;
 mod splits;
 
 use glam::DVec3;
-use isochore_mesh::NONE;
+use isochore_mesh::{Aabb, NONE};
 use rayon::prelude::*;
 
-use super::{InteractiveRefinement, MoveReceipt, SessionError, SessionTool, stroke::ActiveStroke, surface::Surface};
+use super::{
+    InteractiveRefinement, MoveReceipt, SessionError, SessionTool,
+    stroke::{ActiveStroke, Segment},
+    surface::Surface,
+};
 
 /// Share of the tool's feature size that edges may have by default. Larger lets the field slip through between vertices and lies
 /// farther off the curved image, by the square; smaller makes triangles that nobody sees.
@@ -86,18 +90,9 @@ pub(super) struct Pass<'a> {
 
 impl Pass<'_> {
     /// Splits edges that are too long of those of `triangles` that the last segment of the way may touch.
-    pub(super) fn resolve(
-        &mut self,
-        triangles: &[u32],
-        options: &InteractiveRefinement,
-        segment: &super::stroke::Segment,
-    ) {
+    pub(super) fn resolve(&mut self, triangles: &[u32], options: &InteractiveRefinement, segment: &Segment) {
         let limits = options.limits(&self.stroke.tool);
-        let may_touch = |[a, b, c]: [DVec3; 3]| {
-            let center = (a + b + c) / 3.0;
-            let radius = [a, b, c].iter().map(|corner| corner.distance(center)).fold(0.0, f64::max);
-            segment.stroke.may_touch(center, radius)
-        };
+        let may_touch = |corners: [DVec3; 3]| segment.may_touch(Aabb::of(corners));
         let surveyed =
             survey(self.surface, triangles, &Limits { shortest2: 0.0, flip: false, ..limits }, Some(&may_touch));
         self.split(surveyed.long, options, &limits, Some(&may_touch));
@@ -108,6 +103,10 @@ impl Pass<'_> {
         let limits = options.limits(&self.stroke.tool);
         let surveyed = survey(self.surface, triangles, &limits, None);
         let known = self.edited.len();
+        if limits.flip {
+            // Shear only turns: there another edge is short where this one is too long, and a split would add what no flow asks for.
+            self.flip(surveyed.long.iter().map(|&(_, edge)| edge).collect(), flips::FOR_LENGTH, options, &limits);
+        }
         self.split(surveyed.long, options, &limits, None);
         self.collapse(surveyed.short, options, &limits);
         if limits.flip {
@@ -115,7 +114,7 @@ impl Pass<'_> {
             let edited = self.edited[known..].to_vec();
             let again = Limits { longest2: f64::INFINITY, shortest2: 0.0, ..limits };
             obtuse.extend(survey(self.surface, &edited, &again, None).obtuse);
-            self.flip(obtuse, options, &limits);
+            self.flip(obtuse, flips::FOR_SHAPE, options, &limits);
         }
     }
 

@@ -1,37 +1,39 @@
 //! What a move touches: sets of triangles and vertices, in ascending order so that no bit depends on how they were found.
 
-use isochore_mesh::Aabb;
+use rayon::prelude::*;
 
-use super::surface::Surface;
+use super::{stroke::Segment, surface::Surface};
+
+/// Triangles that one task looks at.
+const CHUNK: usize = 4096;
 
 impl Surface {
-    /// The triangles whose own boxes touch a box: which leaves of the tree they are in, which depends on its history, plays no part.
-    pub(super) fn triangles_in(&mut self, bounds: Aabb) -> Vec<u32> {
-        let (triangles, positions) = (self.topology.triangles(), self.positions.items());
-        let touches = |triangle: u32| {
+    /// All triangles that a segment of a way may touch, and some that it does not: which, and in what order, depends on the history
+    /// of the tree, so no result may.
+    pub(super) fn triangles_near(&self, segment: &Segment) -> Vec<u32> {
+        let mut near = Vec::new();
+        self.tree.visit(|bounds| segment.may_touch_within(bounds), |triangle| near.push(triangle));
+        near
+    }
+
+    /// Those of the triangles `near`, in which all at the vertices `moved` are, that have one of these vertices, and `others`.
+    pub(super) fn triangles_at(&mut self, moved: &[u32], near: &[u32]) -> Vec<u32> {
+        let vertices = &mut self.vertex_marks;
+        vertices.clear();
+        vertices.resize(self.positions.items().len());
+        vertices.extend(moved.iter().copied());
+        let (vertices, triangles) = (&self.vertex_marks, self.topology.triangles());
+        let has_moved = |&triangle: &u32| {
             let triangle = &triangles[triangle as usize];
-            triangle.is_alive() && {
-                let own = Aabb::of(triangle.vertices.map(|vertex| positions[vertex as usize]));
-                own.min.cmple(bounds.max).all() && own.max.cmpge(bounds.min).all()
-            }
+            triangle.is_alive() && triangle.vertices.iter().any(|&vertex| vertices.contains(vertex))
         };
+        let found = near.par_chunks(CHUNK).map(|chunk| chunk.iter().copied().filter(has_moved).collect::<Vec<u32>>());
+        let found: Vec<Vec<u32>> = found.collect();
         let marks = &mut self.triangle_marks;
         marks.clear();
         marks.resize(self.corners.items().len());
-        self.tree.visit_box(bounds, |triangle| {
-            if touches(triangle) {
-                marks.insert(triangle);
-            }
-        });
+        marks.extend(found.into_iter().flatten());
         marks.sorted()
-    }
-
-    /// The vertices of `triangles` that lie in a box.
-    pub(super) fn vertices_in(&mut self, triangles: &[u32], bounds: Aabb) -> Vec<u32> {
-        let mut vertices = self.vertices_of(triangles);
-        let positions = self.positions.items();
-        vertices.retain(|&vertex| bounds.distance(positions[vertex as usize]) == 0.0);
-        vertices
     }
 
     /// The vertices of those of `triangles` that are there.
@@ -50,12 +52,15 @@ impl Surface {
 
     /// The triangles at `vertices`, and `others`.
     pub(super) fn triangles_around(&mut self, vertices: &[u32], others: &[u32]) -> Vec<u32> {
+        let topology = &self.topology;
+        let around = |chunk: &[u32]| -> Vec<u32> {
+            chunk.iter().flat_map(|&vertex| topology.fan(vertex)).map(|half_edge| half_edge / 3).collect()
+        };
+        let around: Vec<Vec<u32>> = vertices.par_chunks(CHUNK).map(around).collect();
         let marks = &mut self.triangle_marks;
         marks.clear();
         marks.resize(self.corners.items().len());
-        for &vertex in vertices {
-            marks.extend(self.topology.fan(vertex).map(|half_edge| half_edge / 3));
-        }
+        marks.extend(around.into_iter().flatten());
         marks.extend(others.iter().copied());
         marks.sorted()
     }

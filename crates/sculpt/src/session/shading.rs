@@ -1,4 +1,4 @@
-//! Vertex normals, made anew only where the surface has changed.
+//! Positions and normals of render vertices, made anew only where the surface has changed.
 
 use glam::DVec3;
 use isochore_mesh::{NONE, previous_half_edge};
@@ -9,36 +9,45 @@ use super::{NormalWeights, surface::Surface};
 /// Vertices that one task makes normals for. Larger leaves threads idle; smaller spends time on handing out tasks.
 const CHUNK: usize = 1024;
 
+/// What the buffers hold of a render vertex.
+struct Shaded {
+    render: u32,
+    position: [f32; 3],
+    normal: [f32; 3],
+}
+
 impl Surface {
-    /// Makes the normals anew of all render vertices of `vertices`.
-    pub(super) fn write_normals(&mut self, vertices: &[u32]) {
-        let normals: Vec<Vec<(u32, [f32; 3])>> = vertices
+    /// Makes the positions and normals anew of all render vertices of `vertices`.
+    pub(super) fn shade(&mut self, vertices: &[u32]) {
+        let shaded: Vec<Vec<Shaded>> = vertices
             .par_chunks(CHUNK)
             .map(|chunk| {
-                let mut normals = Vec::with_capacity(chunk.len());
+                let mut shaded = Vec::with_capacity(chunk.len());
                 let mut fan = Vec::new();
                 for &vertex in chunk {
-                    self.vertex_normals(vertex, &mut fan, &mut normals);
+                    self.shade_vertex(vertex, &mut fan, &mut shaded);
                 }
-                normals
+                shaded
             })
             .collect();
-        for (render, normal) in normals.into_iter().flatten() {
+        for Shaded { render, position, normal } in shaded.into_iter().flatten() {
+            self.set_render_position(render, position);
             self.set_normal(render, normal);
         }
     }
 
-    /// Appends the normals of the render vertices of `vertex`. Triangles between two hard edges share one; across a mere seam of
-    /// attributes the shading is smooth.
-    fn vertex_normals(&self, vertex: u32, fan: &mut Vec<u32>, normals: &mut Vec<(u32, [f32; 3])>) {
+    /// Appends the render vertices of `vertex`. Triangles between two hard edges share a normal; across a mere seam of attributes
+    /// the shading is smooth.
+    fn shade_vertex(&self, vertex: u32, fan: &mut Vec<u32>, shaded: &mut Vec<Shaded>) {
         let first = self.topology.leaving(vertex);
         if first == NONE {
             return;
         }
+        let position = self.position(vertex).as_vec3().to_array();
         fan.clear();
         fan.extend(self.topology.fan(vertex));
         // Turned so that a hard edge, if there is one, comes first. Where the surface ends, the fan begins at the end.
-        if !self.topology.is_boundary(vertex) {
+        if self.has_hard_edges && !self.topology.is_boundary(vertex) {
             let hard = fan.iter().position(|&half_edge| self.is_hard(half_edge));
             fan.rotate_left(hard.unwrap_or(0));
         }
@@ -50,9 +59,9 @@ impl Surface {
             let normal = sum.normalize_or_zero().as_vec3().to_array();
             let mut last = NONE;
             for &half_edge in sector {
-                let render = self.corners.items()[half_edge as usize / 3][half_edge as usize % 3];
+                let render = self.corner(half_edge);
                 if render != last {
-                    normals.push((render, normal));
+                    shaded.push(Shaded { render, position, normal });
                 }
                 last = render;
             }
@@ -62,7 +71,7 @@ impl Surface {
 
     /// Whether shading breaks across the edge of a half-edge.
     pub(super) fn is_hard(&self, half_edge: u32) -> bool {
-        self.patches.items()[half_edge as usize / 3].hard >> (half_edge % 3) & 1 == 1
+        self.has_hard_edges && self.patches.items()[half_edge as usize / 3].hard >> (half_edge % 3) & 1 == 1
     }
 
     /// The normal of a triangle, weighted for the vertex that a half-edge of it starts from.

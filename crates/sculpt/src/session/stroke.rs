@@ -42,6 +42,34 @@ pub(super) struct ActiveStroke {
 pub(super) struct Segment {
     pub(super) stroke: field::Stroke,
     pub(super) reach: Aabb,
+    /// Boxes of a shorter half-diagonal are not asked about one by one, model units.
+    finest: f64,
+}
+
+/// Half-diagonal of the finest boxes of the index that are asked about, as a share of the size of the reach. Larger lets points pass
+/// that the flow finds at rest; smaller asks more often than that takes.
+const FINEST: f64 = 1.0 / 64.0;
+
+/// What a ball around a box is widened by so that it holds the balls around all boxes within. For a box of sides b in one of sides
+/// a, whose centers differ by (a − b)/2 at most, |a − b| + |b| ≤ √2 |a|; the rest is for rounding.
+const NESTING: f64 = 1.415;
+
+impl Segment {
+    pub(super) fn new(stroke: field::Stroke) -> Self {
+        let reach = stroke.reach();
+        Self { reach, finest: FINEST * reach.size().max_element(), stroke }
+    }
+
+    /// Whether the support may touch what has these bounds; false is certain.
+    pub(super) fn may_touch(&self, bounds: Aabb) -> bool {
+        self.reach.touches(bounds) && self.stroke.may_touch(bounds.center(), 0.5 * bounds.size().length())
+    }
+
+    /// Whether it [may touch](Self::may_touch) anything within these bounds; false is certain.
+    pub(super) fn may_touch_within(&self, bounds: Aabb) -> bool {
+        let radius = 0.5 * NESTING * bounds.size().length();
+        self.reach.touches(bounds) && (radius < self.finest || self.stroke.may_touch(bounds.center(), radius))
+    }
 }
 
 impl ActiveStroke {
@@ -106,6 +134,7 @@ impl ActiveStroke {
         receipt.removed_vertices += done.removed_vertices;
         receipt.flipped_edges += done.flipped_edges;
         receipt.is_limited |= done.is_limited;
+        receipt.refused_splits = receipt.refused_splits.max(done.refused_splits);
         receipt.evaluations += done.evaluations;
         let (sum, now) = (&mut receipt.seconds, &done.seconds);
         sum.select += now.select;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use isochore_mesh::{Delta, EditDelta, EditMesh, Journaled, NONE, Origin, SurfaceTree, TriMesh};
+use isochore_mesh::{Aabb, Delta, EditDelta, EditMesh, Journaled, NONE, Origin, SurfaceTree, TriMesh};
 
 use super::{
     NormalWeights,
@@ -44,6 +44,8 @@ pub(super) struct Surface {
     colors: Vec<[f32; 4]>,
     pub(super) tree: SurfaceTree,
     pub(super) weights: NormalWeights,
+    /// Whether shading breaks anywhere.
+    pub(super) has_hard_edges: bool,
     dirty: Dirty,
     /// Scratch.
     pub(super) triangle_marks: Marks,
@@ -72,7 +74,8 @@ pub(super) struct SurfaceDelta {
     normals: Delta<[f32; 3]>,
 }
 
-/// Room in the buffers beyond what the mesh needs as opened, as a share of it, so that addresses stay for a while.
+/// Room in all arrays beyond what the mesh needs as opened, as a share of it, so that addresses stay for a while and no early move
+/// waits for a large mesh to be copied. Larger spends memory on meshes that hardly grow; smaller, moves that take long.
 const SPARE_ROOM: f64 = 0.125;
 
 impl Surface {
@@ -93,6 +96,7 @@ impl Surface {
             positions: Journaled::new(opened.positions.clone()),
             render_positions: Journaled::new(render.iter().map(position).collect()),
             corners: Journaled::new(corners),
+            has_hard_edges: patches.iter().any(|patch| patch.hard != 0),
             patches: Journaled::new(patches),
             render: Journaled::new(render),
             normals: Journaled::new(vec![[0.0; 3]; count]),
@@ -106,16 +110,22 @@ impl Surface {
             opened,
         };
         let spare = |length: usize| (length as f64 * SPARE_ROOM) as usize + 1024;
+        let triangles = spare(surface.corners.items().len());
+        surface.topology.reserve(spare(surface.topology.vertex_count()), triangles);
+        surface.positions.reserve(spare(surface.positions.items().len()));
+        surface.corners.reserve(triangles);
+        surface.patches.reserve(triangles);
+        surface.tree.reserve(triangles);
+        surface.render.reserve(spare(count));
         surface.render_positions.reserve(spare(count));
         surface.normals.reserve(spare(count));
-        surface.corners.reserve(spare(surface.corners.items().len()));
         surface.uvs.iter_mut().for_each(|set| set.reserve(count + spare(count)));
         if surface.has_colors() {
             surface.colors.reserve(count + spare(count));
         }
         surface.write_attributes();
         let all: Vec<u32> = (0..surface.topology.vertex_count() as u32).collect();
-        surface.write_normals(&all);
+        surface.shade(&all);
         surface.dirty.positions.mark_range(0, count);
         surface.dirty.indices.mark_range(0, surface.corners.items().len());
         surface.note_addresses();
@@ -158,13 +168,19 @@ impl Surface {
     pub(super) fn swap(&mut self, delta: &mut SurfaceDelta) {
         let triangles = self.corners.items().len();
         let vertices = self.positions.items().len();
-        self.topology.swap(&mut delta.topology);
-        self.positions.swap(&mut delta.positions);
-        self.corners.swap(&mut delta.corners);
-        self.patches.swap(&mut delta.patches);
-        self.render.swap(&mut delta.render);
-        self.render_positions.swap(&mut delta.render_positions);
-        self.normals.swap(&mut delta.normals);
+        rayon::join(
+            || {
+                self.topology.swap(&mut delta.topology);
+                self.positions.swap(&mut delta.positions);
+            },
+            || {
+                self.corners.swap(&mut delta.corners);
+                self.patches.swap(&mut delta.patches);
+                self.render.swap(&mut delta.render);
+                self.render_positions.swap(&mut delta.render_positions);
+                self.normals.swap(&mut delta.normals);
+            },
+        );
 
         delta.render_positions.indices().for_each(|index| self.dirty.positions.mark(index));
         delta.normals.indices().for_each(|index| self.dirty.normals.mark(index));
@@ -189,39 +205,26 @@ impl Surface {
     /// Lets the tree follow triangles that moved or were edited, and those that are new or gone.
     pub(super) fn update_tree(&mut self, changed: &[u32]) {
         let (triangles, positions) = (self.topology.triangles(), self.positions.items());
-        let corners = |triangle: u32| {
+        let bounds = |triangle: u32| {
             let triangle = &triangles[triangle as usize];
-            triangle.is_alive().then(|| triangle.vertices.map(|vertex| positions[vertex as usize]))
+            let corners = triangle.is_alive().then(|| triangle.vertices.map(|vertex| positions[vertex as usize]));
+            Aabb::of(corners.into_iter().flatten())
         };
         let near =
             |triangle: u32| triangles[triangle as usize].twins.map(|twin| if twin == NONE { NONE } else { twin / 3 });
-        self.tree.resize(triangles.len(), &corners, &near);
-        self.tree.update(changed, &corners);
+        self.tree.resize(triangles.len(), &bounds, &near);
+        self.tree.update(changed, &bounds);
     }
 
-    /// Brings the buffers up to date where `vertices` moved or their triangles were edited. `moved` are those that moved.
-    pub(super) fn write_buffers(&mut self, moved: &[u32], vertices: &[u32]) {
-        for &vertex in moved {
-            let position = self.positions.get(vertex).as_vec3().to_array();
-            let mut last = u32::MAX;
-            for half_edge in self.topology.fan(vertex) {
-                let render = self.corners.items()[half_edge as usize / 3][half_edge as usize % 3];
-                if render != last {
-                    self.render_positions.set(render, position);
-                    self.dirty.positions.mark(render);
-                }
-                last = render;
-            }
-            if last == u32::MAX {
-                // Without triangles, a vertex of the mesh as opened is its own render vertex, and a removed one is not drawn.
-                if self.render.items()[vertex as usize].origin.is_none() {
-                    self.render_positions.set(vertex, position);
-                    self.dirty.positions.mark(vertex);
-                }
-            }
+    /// Brings the buffers up to date at `vertices`, which have triangles that moved or were edited, and where `loose` vertices,
+    /// which have none, moved.
+    pub(super) fn write_buffers(&mut self, vertices: &[u32], loose: impl Iterator<Item = u32>) {
+        for vertex in loose {
+            // Without triangles, a vertex is its own render vertex.
+            self.set_render_position(vertex, self.position(vertex).as_vec3().to_array());
         }
         self.write_attributes();
-        self.write_normals(vertices);
+        self.shade(vertices);
         self.note_addresses();
     }
 
@@ -240,6 +243,14 @@ impl Surface {
             self.patches.push(patch);
         } else {
             self.patches.set(triangle, patch);
+        }
+    }
+
+    /// Sets the position of a render vertex.
+    pub(super) fn set_render_position(&mut self, render: u32, position: [f32; 3]) {
+        if self.render_positions.get(render) != position {
+            self.render_positions.set(render, position);
+            self.dirty.positions.mark(render);
         }
     }
 

@@ -4,6 +4,11 @@ use super::{InteractiveRefinement, Limits, MayTouch, Pass, survey};
 /// left then is split by the next move.
 const MAX_ROUNDS: usize = 10;
 
+/// Edges are split as long as the stroke has stretched them less than this many times over what a longest edge was. Larger follows the
+/// flow farther where it shears without end, at the rim of a core that goes through the surface, by its square in triangles;
+/// smaller leaves deep pulls coarse.
+const MOST_STRETCH: f64 = 8.0;
+
 impl Pass<'_> {
     /// Splits edges that are too long, longest first, and goes on with what that leaves.
     ///
@@ -16,15 +21,25 @@ impl Pass<'_> {
         limits: &Limits,
         may_touch: Option<MayTouch<'_>>,
     ) {
+        let mut refused = Vec::new();
         for _ in 0..MAX_ROUNDS {
             long.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             long.dedup_by_key(|(_, edge)| *edge);
             long.retain(|&(_, edge)| self.editable(edge, options).is_some());
+            let shortest2 = limits.longest2 / (MOST_STRETCH * MOST_STRETCH);
+            long.retain(|(_, ends)| {
+                let [a, b] = ends.map(|vertex| self.stroke.base(self.surface, vertex));
+                let helps = a.distance_squared(b) > shortest2;
+                if !helps {
+                    refused.push(*ends);
+                }
+                helps
+            });
             let room = limits.max_triangles.saturating_sub(self.surface.topology.alive()) / 2;
             self.done.is_limited |= long.len() > room;
             long.truncate(room);
             if long.is_empty() {
-                return;
+                break;
             }
             let base = |&(_, ends): &(f64, [u32; 2])| {
                 let [a, b] = ends.map(|vertex| self.stroke.base(self.surface, vertex));
@@ -48,5 +63,8 @@ impl Pass<'_> {
             let again = Limits { shortest2: 0.0, flip: false, ..*limits };
             long = survey(self.surface, &edited, &again, may_touch).long;
         }
+        refused.sort_unstable();
+        refused.dedup();
+        self.done.refused_splits = self.done.refused_splits.max(refused.len());
     }
 }
