@@ -28,13 +28,44 @@ pub(crate) fn balance(
     triangles: &[[u32; 3]],
     volume: f64,
 ) -> Option<f64> {
+    solve(positions, directions, triangles, mean, volume, volume.abs())
+}
+
+/// The same for a part of a closed surface, at whose boundary the directions are zero: the volume inside the whole grows by `gain`.
+/// `size` is that volume.
+pub(crate) fn balance_part(
+    positions: &mut [DVec3],
+    directions: &[DVec3],
+    triangles: &[[u32; 3]],
+    gain: f64,
+    size: f64,
+) -> Option<f64> {
+    // Cones to any one point differ by as much as the whole does.
+    let center = mean(positions);
+    let [volume, ..] = volume_cubic(positions, directions, triangles, center);
+    solve(positions, directions, triangles, |_| center, volume + gain, size)
+}
+
+fn mean(positions: &[DVec3]) -> DVec3 {
+    positions.iter().sum::<DVec3>() / positions.len() as f64
+}
+
+/// Makes the volume between the triangles and a center equal to `volume`, up to a share of `size`.
+fn solve(
+    positions: &mut [DVec3],
+    directions: &[DVec3],
+    triangles: &[[u32; 3]],
+    center: impl Fn(&[DVec3]) -> DVec3,
+    volume: f64,
+    size: f64,
+) -> Option<f64> {
     let mut total = 0.0;
     // The second pass takes back what rounding the moved coordinates has changed.
     let before = positions.to_vec();
     for _ in 0..2 {
-        let [c0, c1, c2, c3] = volume_cubic(positions, directions, triangles);
-        let has_hold = c1.abs() > LEAST_SLOPE * volume.abs();
-        let Some(lambda) = has_hold.then(|| root(c0 - volume, c1, c2, c3, volume.abs())).flatten() else {
+        let [c0, c1, c2, c3] = volume_cubic(positions, directions, triangles, center(positions));
+        let has_hold = c1.abs() > LEAST_SLOPE * size;
+        let Some(lambda) = has_hold.then(|| root(c0 - volume, c1, c2, c3, size)).flatten() else {
             positions.copy_from_slice(&before);
             return None;
         };
@@ -49,9 +80,8 @@ pub(crate) fn balance(
     Some(total)
 }
 
-/// Coefficients of the volume of `positions` + λ `directions`, in powers of λ.
-fn volume_cubic(positions: &[DVec3], directions: &[DVec3], triangles: &[[u32; 3]]) -> [f64; 4] {
-    let center = positions.iter().sum::<DVec3>() / positions.len() as f64;
+/// Coefficients of the volume between `center` and `positions` + λ `directions`, in powers of λ.
+fn volume_cubic(positions: &[DVec3], directions: &[DVec3], triangles: &[[u32; 3]], center: DVec3) -> [f64; 4] {
     let det = |a: DVec3, b: DVec3, c: DVec3| a.dot(b.cross(c)) / 6.0;
     sum_terms(triangles.len(), |index| {
         let [a, b, c] = triangles[index].map(|vertex| positions[vertex as usize] - center);

@@ -50,7 +50,7 @@ pub use field::{Field, FieldBlock, MovingField, NO_CORE};
 pub use flow::{FlowError, flow_points};
 pub use jacobian::JacobianRange;
 pub use jointed_tool::{Bone, JointedTool, JointedToolError, Posture};
-pub use lock::{Lock, lock_volume};
+pub use lock::{Lock, lock_part, lock_volume};
 pub use mask::{Mask, MaskError, MirrorPlane, Pin, VertexMask};
 pub use moving_tool::MovingTool;
 pub use pose::{BodyTwist, Pose, rotation_from_vector};

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::balance::balance;
+use crate::balance::{balance, balance_part};
 
 /// What the lock did.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,19 +27,38 @@ pub fn lock_volume(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], 
     let directions = directions(rest, image, triangles)?;
     let unlocked = image.to_vec();
     balance(image, &directions, triangles, volume)?;
-    let shift = |vertex: u32| image[vertex as usize].distance(unlocked[vertex as usize]);
-    let max_shift = (0..image.len() as u32).map(shift).fold(0.0, f64::max);
-    let mut max_shift_per_edge: f64 = 0.0;
-    for [a, b, c] in triangles {
-        for (a, b) in [(*a, *b), (*b, *c), (*c, *a)] {
-            let length = unlocked[a as usize].distance(unlocked[b as usize]);
-            let longest = shift(a).max(shift(b));
-            if longest > 0.0 {
-                max_shift_per_edge = max_shift_per_edge.max(longest / length);
+    Some(Lock::between(&unlocked, image, triangles))
+}
+
+/// The same for a part of a closed surface, with all triangles at what has moved: moves `image` so that the volume inside the whole
+/// grows by `gain`. `size` is the volume of the whole. Takes time in proportion to the part.
+///
+/// # Panics
+/// If an index is out of range, or `rest` is not as long as `image`.
+pub fn lock_part(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], gain: f64, size: f64) -> Option<Lock> {
+    let directions = directions(rest, image, triangles)?;
+    let unlocked = image.to_vec();
+    balance_part(image, &directions, triangles, gain, size)?;
+    Some(Lock::between(&unlocked, image, triangles))
+}
+
+impl Lock {
+    /// What takes `unlocked` positions to `locked` ones.
+    pub fn between(unlocked: &[DVec3], locked: &[DVec3], triangles: &[[u32; 3]]) -> Self {
+        let shift = |vertex: u32| locked[vertex as usize].distance(unlocked[vertex as usize]);
+        let max_shift = (0..locked.len() as u32).map(shift).fold(0.0, f64::max);
+        let mut max_shift_per_edge: f64 = 0.0;
+        for [a, b, c] in triangles {
+            for (a, b) in [(*a, *b), (*b, *c), (*c, *a)] {
+                let length = unlocked[a as usize].distance(unlocked[b as usize]);
+                let longest = shift(a).max(shift(b));
+                if longest > 0.0 {
+                    max_shift_per_edge = max_shift_per_edge.max(longest / length);
+                }
             }
         }
+        Self { max_shift, max_shift_per_edge }
     }
-    Some(Lock { max_shift, max_shift_per_edge })
 }
 
 /// For each vertex its area normal, scaled by its share of the largest displacement.

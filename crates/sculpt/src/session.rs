@@ -43,6 +43,7 @@ mod editing;
 mod error;
 mod export;
 mod history;
+mod locking;
 mod log;
 mod marks;
 mod opening;
@@ -61,7 +62,7 @@ mod volume;
 use std::sync::Arc;
 
 use isochore_field as field;
-use isochore_mesh::{Aabb, ClosedMesh, NONE, TriMesh};
+use isochore_mesh::{Aabb, ClosedMesh, CompensatedSum, NONE, TriMesh};
 
 pub use buffers::{Changes, DirtyRange, RenderBuffers};
 pub use error::{OpenError, SessionError};
@@ -206,7 +207,8 @@ impl Session {
 
     /// Ends the stroke, which can then be undone and is in the log. A stroke of fewer than two poses did nothing and leaves nothing.
     ///
-    /// No volume lock acts: the change told is that of the bare method.
+    /// Then the volume lock acts, if the session has one: it moves what the host sees, and not what the next stroke sets out from. The
+    /// change told is that of the bare method.
     ///
     /// # Errors
     /// [`SessionError::NoStroke`].
@@ -218,13 +220,19 @@ impl Session {
         }
         receipt.touched_vertices = self.surface.positions.edited().count();
         receipt.volume = self.opened_volume.map(|_| stroke.volume(&self.surface));
+        let mut shown_change = receipt.volume.map_or(0.0, |volume| volume.total());
+        if let Some(volume) = self.opened_volume.filter(|_| self.options.lock && stroke.keys.len() >= 2) {
+            let excess = self.shown_volume_change();
+            let locked = stroke.lock(&mut self.surface, excess, volume.abs());
+            (receipt.lock_max_shift, shown_change) = (locked.max_shift, locked.shown_change);
+        }
         let mut delta = self.surface.finish(stroke.alive);
         if stroke.keys.len() < 2 {
             self.surface.swap(&mut delta);
             return Ok(receipt);
         }
         let volume_change = receipt.volume.map(|volume| volume.total());
-        let stroke = LoggedStroke { tool: stroke.tool, keys: stroke.keys, volume_change };
+        let stroke = LoggedStroke { tool: stroke.tool, keys: stroke.keys, volume_change, shown_change };
         let step = Step { stroke, delta };
         receipt.undo_bytes = step.bytes();
         receipt.forgotten_strokes = self.steps.push(step, self.options.undo_bytes);
@@ -303,6 +311,13 @@ impl Session {
     /// What has changed in the buffers since the last call: at first, everything. Ask after each move, undo and redo.
     pub fn take_changes(&mut self) -> Changes {
         self.surface.take_changes()
+    }
+
+    /// How much more volume the host sees than the mesh had as opened, without the stroke under way.
+    fn shown_volume_change(&self) -> f64 {
+        let mut sum = CompensatedSum::default();
+        self.logged().for_each(|stroke| sum.add(stroke.shown_change));
+        sum.value()
     }
 
     fn logged(&self) -> impl Iterator<Item = &LoggedStroke> {

@@ -50,6 +50,8 @@ impl Surface {
 
         let split = self.topology.split(half_edge);
         self.positions.push(position);
+        let ends = [from, to].map(|corner| self.offsets.get(self.render.get(corner).vertex));
+        self.offsets.push(0.5 * (ends[0] + ends[1]));
         let inserted = self.insert_corner(split.vertex, [from, to], near);
         let (mut corners, patch) = (self.corners.get(near), self.patches.get(near));
         let apex = corners[(side + 2) % 3];

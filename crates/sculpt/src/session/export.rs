@@ -1,7 +1,7 @@
 //! The surface as a mesh without holes in its numbering.
 
 use glam::DVec3;
-use isochore_field::{Lock, lock_volume};
+use isochore_field::Lock;
 use isochore_mesh::{NONE, Origin, Resampling, TriMesh, VertexOrigin};
 
 use super::Session;
@@ -13,7 +13,7 @@ pub struct Exported {
     pub mesh: TriMesh,
     /// By vertex of the mesh the vertex of the session.
     pub vertices: Vec<u32>,
-    /// What the volume lock did; none where it was not asked for, or found nothing to do.
+    /// What the locks of all strokes did together; none where it was not asked for, or they did nothing.
     pub lock: Option<Lock>,
 }
 
@@ -21,9 +21,9 @@ impl Session {
     /// The surface as it stands, without what was removed; the stroke under way included. Vertices and triangles keep their order.
     ///
     /// Attributes are interpolated once from the mesh as opened, by each corner's origin; shading normals are turned with the
-    /// surface. With `lock`, a small displacement of all that has moved gives back the volume of the mesh as opened exactly. A
-    /// session never locks by itself: the next stroke would set out from what no flow has made, and its log would give another
-    /// result elsewhere.
+    /// surface. With `lock`, vertices are where the host sees them, which keeps the volume of the mesh as opened: the flow and what
+    /// the lock has added at the end of each stroke; the stroke under way has none yet. Without, they are where the flow alone has
+    /// taken them, to the bits that the log gives elsewhere.
     pub fn export(&self, lock: bool) -> Exported {
         let surface = &self.surface;
         let count = self.vertex_count();
@@ -54,12 +54,14 @@ impl Session {
         };
         let rest: Vec<DVec3> = resampling.vertices.iter().map(rest).collect();
         let mut mesh = opened.resampled(&resampling);
-        let mut done = None;
-        if let Some(volume) = self.opened_volume.filter(|_| lock) {
-            done = lock_volume(&rest, &mut mesh.positions, &mesh.triangles, volume);
-        }
+        let has_lock = lock && surface.offsets.items().iter().any(|&offset| offset != DVec3::ZERO);
+        let lock = has_lock.then(|| {
+            let shown: Vec<DVec3> = vertices.iter().map(|&vertex| surface.shown(vertex)).collect();
+            let unlocked = std::mem::replace(&mut mesh.positions, shown);
+            Lock::between(&unlocked, &mesh.positions, &mesh.triangles)
+        });
         mesh.turn_normals(&rest);
-        Exported { mesh, vertices, lock: done }
+        Exported { mesh, vertices, lock }
     }
 
     fn vertex_origin(&self, vertex: u32) -> VertexOrigin {

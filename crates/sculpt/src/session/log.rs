@@ -19,6 +19,8 @@ pub(super) struct LoggedStroke {
     pub(super) keys: Vec<Key>,
     /// The whole change of the volume.
     pub(super) volume_change: Option<f64>,
+    /// The same of what the host sees: what the lock has left.
+    pub(super) shown_change: f64,
 }
 
 /// Why a recipe could not be carried out in a session.

@@ -16,6 +16,9 @@ pub struct SessionOptions {
     pub step: f64,
     /// Bytes that undo and redo may hold. The oldest strokes are forgotten first; the last one is always kept.
     pub undo_bytes: usize,
+    /// Whether a small displacement of what a stroke has moved gives back the volume of the mesh as opened when the stroke ends. It is
+    /// kept apart from the flow, and an open surface has no volume to give back.
+    pub lock: bool,
     /// How triangles are weighted in the normals of the vertices that they meet in.
     pub normals: NormalWeights,
 }
@@ -27,6 +30,7 @@ impl Default for SessionOptions {
             mask: recipe::Mask::default(),
             step: recipe::Integrate::default().step,
             undo_bytes: 1 << 30,
+            lock: true,
             normals: NormalWeights::default(),
         }
     }
@@ -77,6 +81,6 @@ pub struct InteractiveRefinement {
 
 impl Default for InteractiveRefinement {
     fn default() -> Self {
-        Self { longest: None, collapse: 0.25, flip: true, max_triangles: 20_000_000, keep: Vec::new() }
+        Self { longest: None, collapse: 0.0625, flip: true, max_triangles: 20_000_000, keep: Vec::new() }
     }
 }

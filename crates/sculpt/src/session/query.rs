@@ -37,13 +37,16 @@ impl Session {
     /// The first point of the surface along the ray from `origin`, seen from either side. `direction` may have any length.
     pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let surface = &self.surface;
-        surface.tree.cast_ray(origin, direction, &|triangle| surface.corners_of(triangle)).map(|hit| surface.hit(hit))
+        surface
+            .tree
+            .cast_ray(origin, direction, &|triangle| surface.shown_corners(triangle))
+            .map(|hit| surface.hit(hit))
     }
 
     /// The point of the surface nearest to `point`.
     pub fn closest_point(&self, point: DVec3) -> Option<Hit> {
         let surface = &self.surface;
-        surface.tree.closest_point(point, &|triangle| surface.corners_of(triangle)).map(|hit| surface.hit(hit))
+        surface.tree.closest_point(point, &|triangle| surface.shown_corners(triangle)).map(|hit| surface.hit(hit))
     }
 
     /// The vertices within the support of a tool at a pose, which are those that it moves as soon as it moves, in ascending order,
@@ -114,8 +117,8 @@ impl Session {
         self.stroke.as_ref().map_or(MovedVolume::default(), |stroke| stroke.moved_volume(&self.surface))
     }
 
-    /// The volume inside the surface, without the stroke under way: that of the mesh as opened and the changes of all strokes since.
-    /// None where the surface is open.
+    /// The volume inside the surface before any lock, without the stroke under way: that of the mesh as opened and the changes of all
+    /// strokes since. None where the surface is open.
     pub fn volume(&self) -> Option<f64> {
         let opened = self.opened_volume?;
         let mut sum = isochore_mesh::CompensatedSum::default();
@@ -135,9 +138,15 @@ impl Session {
         self.surface.topology.alive()
     }
 
-    /// Positions by vertex, those included that were removed, model units.
+    /// Positions by vertex where the flow has taken them, those included that were removed, model units: what strokes work on, and
+    /// what the log gives elsewhere.
     pub fn positions(&self) -> &[DVec3] {
         self.surface.positions.items()
+    }
+
+    /// By vertex what the locks of all strokes add to its position, model units: buffers, picks and exports with a lock show the sum.
+    pub fn offsets(&self) -> &[DVec3] {
+        self.surface.offsets.items()
     }
 
     /// Whether a vertex was not removed.
@@ -177,7 +186,7 @@ impl Session {
 impl Surface {
     fn hit(&self, hit: SurfaceHit) -> Hit {
         let vertices = self.topology.triangles()[hit.triangle as usize].vertices;
-        let [a, b, c] = vertices.map(|vertex| self.position(vertex));
+        let [a, b, c] = vertices.map(|vertex| self.shown(vertex));
         Hit {
             triangle: hit.triangle,
             vertices,

@@ -13,7 +13,7 @@ pub struct MoveReceipt {
     pub flipped_edges: usize,
     /// Whether the limit on triangles kept edges from being split.
     pub is_limited: bool,
-    /// Edges that stay too long because the stroke has stretched the surface there too far for a split to help.
+    /// Edges that stay too long because the stroke has stirred the surface there too much for a split to help.
     pub refused_splits: usize,
     /// Evaluations of the field.
     pub evaluations: u64,
@@ -60,12 +60,15 @@ pub struct StrokeReceipt {
     pub flipped_edges: usize,
     /// Whether the limit on triangles kept edges from being split.
     pub is_limited: bool,
-    /// The most edges in any move that stayed too long because the stroke has stretched the surface there too far for a split to help.
+    /// The most edges in any move that stayed too long because the stroke has stirred the surface there too much for a split to help.
     pub refused_splits: usize,
     /// Evaluations of the fields.
     pub evaluations: u64,
     /// What became of the volume; none where the surface is open.
     pub volume: Option<StrokeVolume>,
+    /// Longest displacement by the lock of this stroke, model units; none where it had nothing to hold: the surface is open, the
+    /// session locks none, or the stroke has moved nothing that the volume depends on.
+    pub lock_max_shift: Option<f64>,
     /// Wall time of all moves by stage.
     pub seconds: MoveSeconds,
     /// Bytes that undo holds for this stroke.

@@ -43,7 +43,7 @@ impl Surface {
         if first == NONE {
             return;
         }
-        let position = self.position(vertex).as_vec3().to_array();
+        let position = self.shown(vertex).as_vec3().to_array();
         fan.clear();
         fan.extend(self.topology.fan(vertex));
         // Turned so that a hard edge, if there is one, comes first. Where the surface ends, the fan begins at the end.
@@ -78,8 +78,7 @@ impl Surface {
     #[inline]
     fn weighted_normal(&self, half_edge: u32) -> DVec3 {
         let triangle = &self.topology.triangles()[half_edge as usize / 3];
-        let positions = self.positions.items();
-        let [a, b, c] = triangle.vertices.map(|vertex| positions[vertex as usize]);
+        let [a, b, c] = triangle.vertices.map(|vertex| self.shown(vertex));
         let normal = (b - a).cross(c - a);
         match self.weights {
             NormalWeights::Area => normal,

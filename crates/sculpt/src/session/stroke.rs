@@ -25,8 +25,8 @@ pub(super) struct ActiveStroke {
     pub(super) way: Vec<Segment>,
     /// Triangles there when it began.
     pub(super) alive: usize,
-    /// Where inserted vertices lie on the surface as it stood when the stroke began, in order.
-    pub(super) inserted: Vec<DVec3>,
+    /// Vertices that it inserted, in order.
+    pub(super) inserted: Vec<Inserted>,
     /// Triangles with a vertex that moved.
     pub(super) moved: Vec<u32>,
     pub(super) moved_marks: Marks,
@@ -35,6 +35,15 @@ pub(super) struct ActiveStroke {
     /// Size of all that was summed up, for the bound on rounding.
     pub(super) remeshed: f64,
     pub(super) receipt: StrokeReceipt,
+}
+
+/// A vertex that the stroke inserted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inserted {
+    /// Where it lies on the surface as it stood when the stroke began.
+    pub(super) base: DVec3,
+    /// How many times what had moved was halved for it.
+    pub(super) halvings: u8,
 }
 
 /// The way between two poses.
@@ -96,8 +105,14 @@ impl ActiveStroke {
     pub(super) fn base(&self, surface: &Surface, vertex: u32) -> DVec3 {
         match surface.positions.original(vertex) {
             Some(position) => position,
-            None => self.inserted[vertex as usize - surface.positions.original_len()],
+            None => self.inserted[vertex as usize - surface.positions.original_len()].base,
         }
+    }
+
+    /// How many times the stroke has halved what it had moved to insert a vertex.
+    pub(super) fn halvings(&self, surface: &Surface, vertex: u32) -> u8 {
+        let inserted = (vertex as usize).checked_sub(surface.positions.original_len());
+        inserted.map_or(0, |inserted| self.inserted[inserted].halvings)
     }
 
     /// Carries points of that surface through all that the stroke did so far. Returns how many times the fields were evaluated.

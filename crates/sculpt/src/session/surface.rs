@@ -32,7 +32,10 @@ pub(super) struct Patch {
 pub(super) struct Surface {
     pub(super) opened: Arc<TriMesh>,
     pub(super) topology: EditMesh,
+    /// Where the flow has taken the vertices.
     pub(super) positions: Journaled<DVec3>,
+    /// What the locks of the strokes add to that for the eyes of the host.
+    pub(super) offsets: Journaled<DVec3>,
     /// By triangle its render vertices, all zero where it was removed: the index buffer itself.
     pub(super) corners: Journaled<[u32; 3]>,
     pub(super) patches: Journaled<Patch>,
@@ -67,6 +70,7 @@ struct Dirty {
 pub(super) struct SurfaceDelta {
     topology: EditDelta,
     positions: Delta<DVec3>,
+    offsets: Delta<DVec3>,
     corners: Delta<[u32; 3]>,
     patches: Delta<Patch>,
     render: Delta<RenderVertex>,
@@ -94,6 +98,7 @@ impl Surface {
         let mut surface = Self {
             topology,
             positions: Journaled::new(opened.positions.clone()),
+            offsets: Journaled::new(vec![DVec3::ZERO; opened.positions.len()]),
             render_positions: Journaled::new(render.iter().map(position).collect()),
             corners: Journaled::new(corners),
             has_hard_edges: patches.iter().any(|patch| patch.hard != 0),
@@ -113,6 +118,7 @@ impl Surface {
         let triangles = spare(surface.corners.items().len());
         surface.topology.reserve(spare(surface.topology.vertex_count()), triangles);
         surface.positions.reserve(spare(surface.positions.items().len()));
+        surface.offsets.reserve(spare(surface.positions.items().len()));
         surface.corners.reserve(triangles);
         surface.patches.reserve(triangles);
         surface.tree.reserve(triangles);
@@ -140,8 +146,23 @@ impl Surface {
         triangle.is_alive().then(|| triangle.vertices.map(|vertex| positions[vertex as usize]))
     }
 
+    /// Where the host sees a vertex.
+    #[inline]
+    pub(super) fn shown(&self, vertex: u32) -> DVec3 {
+        let (position, offset) = (self.positions.get(vertex), self.offsets.get(vertex));
+        // Adding zero would turn a coordinate of −0 into +0.
+        if offset == DVec3::ZERO { position } else { position + offset }
+    }
+
+    /// Where the host sees the corners of a triangle that is there.
+    pub(super) fn shown_corners(&self, triangle: u32) -> Option<[DVec3; 3]> {
+        let triangle = &self.topology.triangles()[triangle as usize];
+        triangle.is_alive().then(|| triangle.vertices.map(|vertex| self.shown(vertex)))
+    }
+
     pub(super) fn begin(&mut self) -> usize {
         self.positions.begin();
+        self.offsets.begin();
         self.corners.begin();
         self.patches.begin();
         self.render.begin();
@@ -154,6 +175,7 @@ impl Surface {
         let mut delta = SurfaceDelta {
             topology: self.topology.finish(alive),
             positions: self.positions.finish(),
+            offsets: self.offsets.finish(),
             corners: self.corners.finish(),
             patches: self.patches.finish(),
             render: self.render.finish(),
@@ -172,6 +194,7 @@ impl Surface {
             || {
                 self.topology.swap(&mut delta.topology);
                 self.positions.swap(&mut delta.positions);
+                self.offsets.swap(&mut delta.offsets);
             },
             || {
                 self.corners.swap(&mut delta.corners);
@@ -194,7 +217,8 @@ impl Surface {
 
         // The boxes: around what moved, and what was edited.
         let now = self.corners.items().len();
-        let moved: Vec<u32> = delta.positions.indices().filter(|&vertex| (vertex as usize) < vertices).collect();
+        let moved = delta.positions.indices().chain(delta.offsets.indices());
+        let moved: Vec<u32> = moved.filter(|&vertex| (vertex as usize) < vertices).collect();
         let edited: Vec<u32> =
             delta.topology.triangles.indices().filter(|&triangle| (triangle as usize) < now).collect();
         let mut changed = self.triangles_around(&moved, &edited);
@@ -204,11 +228,17 @@ impl Surface {
 
     /// Lets the tree follow triangles that moved or were edited, and those that are new or gone.
     pub(super) fn update_tree(&mut self, changed: &[u32]) {
-        let (triangles, positions) = (self.topology.triangles(), self.positions.items());
+        let triangles = self.topology.triangles();
+        let (positions, offsets) = (&self.positions, &self.offsets);
+        // Around where the flow has taken them and where the host sees them.
         let bounds = |triangle: u32| {
             let triangle = &triangles[triangle as usize];
-            let corners = triangle.is_alive().then(|| triangle.vertices.map(|vertex| positions[vertex as usize]));
-            Aabb::of(corners.into_iter().flatten())
+            let ends = |vertex| {
+                let position = positions.get(vertex);
+                [position, position + offsets.get(vertex)]
+            };
+            let corners = triangle.is_alive().then(|| triangle.vertices.map(ends));
+            Aabb::of(corners.into_iter().flatten().flatten())
         };
         let near =
             |triangle: u32| triangles[triangle as usize].twins.map(|twin| if twin == NONE { NONE } else { twin / 3 });
@@ -221,7 +251,7 @@ impl Surface {
     pub(super) fn write_buffers(&mut self, vertices: &[u32], loose: impl Iterator<Item = u32>) {
         for vertex in loose {
             // Without triangles, a vertex is its own render vertex.
-            self.set_render_position(vertex, self.position(vertex).as_vec3().to_array());
+            self.set_render_position(vertex, self.shown(vertex).as_vec3().to_array());
         }
         self.write_attributes();
         self.shade(vertices);
@@ -264,7 +294,7 @@ impl Surface {
 
     /// Appends a render vertex of a vertex that stands where it is.
     pub(super) fn push_render_vertex(&mut self, render: RenderVertex) -> u32 {
-        let position = self.positions.get(render.vertex).as_vec3().to_array();
+        let position = self.shown(render.vertex).as_vec3().to_array();
         self.render_positions.push(position);
         self.normals.push([0.0; 3]);
         let index = self.render.push(render);
@@ -351,6 +381,7 @@ impl SurfaceDelta {
     pub(super) fn bytes(&self) -> usize {
         self.topology.bytes()
             + self.positions.bytes()
+            + self.offsets.bytes()
             + self.corners.bytes()
             + self.patches.bytes()
             + self.render.bytes()
@@ -361,6 +392,7 @@ impl SurfaceDelta {
     fn shrink(&mut self) {
         self.topology.shrink();
         self.positions.shrink();
+        self.offsets.shrink();
         self.corners.shrink();
         self.patches.shrink();
         self.render.shrink();

@@ -20,7 +20,7 @@ pub struct MovedVolume {
 
 impl ActiveStroke {
     /// Every triangle that the stroke moved or edited.
-    fn touched<'a>(&'a self, surface: &'a Surface) -> impl Iterator<Item = u32> + 'a {
+    pub(super) fn touched<'a>(&'a self, surface: &'a Surface) -> impl Iterator<Item = u32> + 'a {
         let journal = surface.topology.journal();
         let added = journal.original_len() as u32..journal.items().len() as u32;
         let is_moved = |triangle: u32| self.moved_marks.contains(triangle);

@@ -48,7 +48,7 @@ fn render_vertices_follow_their_vertices_and_seams_stay_closed() {
         assert_eq!(corners.map(|corner| session.vertex_of(corner)), expected);
         for corner in *corners {
             let vertex = session.vertex_of(corner);
-            let position = session.positions()[vertex as usize];
+            let position = session.positions()[vertex as usize] + session.offsets()[vertex as usize];
             assert_eq!(buffers.positions[corner as usize], position.as_vec3().to_array());
             // Attributes are those of the origin, interpolated once.
             let origin = session.origin_of(corner).unwrap();

@@ -121,7 +121,7 @@ fn normals_are_those_of_the_whole_mesh() {
         Session::open(icosphere(1.0, 3), SessionOptions { normals: NormalWeights::Angle, ..Default::default() })
             .unwrap();
     make(&mut session, &brush(), &refined(0.1), &arc(0.0, 9));
-    let exported = session.export(false);
+    let exported = session.export(true);
     let expected = exported.mesh.vertex_normals();
     for (index, &vertex) in exported.vertices.iter().enumerate() {
         // Without seams a vertex and its render vertex have one number.

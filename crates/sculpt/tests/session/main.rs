@@ -2,6 +2,7 @@
 
 mod attributes;
 mod buffers;
+mod locking;
 mod queries;
 mod random_calls;
 mod refinement;

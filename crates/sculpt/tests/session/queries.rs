@@ -5,7 +5,7 @@ fn picks_and_closest_points_follow_the_surface() {
     let mut session = ball();
     for round in 0..5 {
         make(&mut session, &brush(), &refined(0.08), &arc(0.3 * f64::from(round), 9));
-        let mesh = session.export(false).mesh;
+        let mesh = session.export(true).mesh;
         let bvh = isochore_mesh::Bvh::new(&mesh.positions, &mesh.triangles).unwrap();
         for index in 0..200 {
             let angle = f64::from(index) * 0.1;

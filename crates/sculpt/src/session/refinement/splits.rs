@@ -1,19 +1,21 @@
+use super::super::stroke::Inserted;
 use super::{InteractiveRefinement, Limits, MayTouch, Pass, survey};
 
 /// Rounds of splitting in one pass: each halves what is too long, so this many resolve edges a thousand times too long. What is
 /// left then is split by the next move.
 const MAX_ROUNDS: usize = 10;
 
-/// Edges are split as long as the stroke has stretched them less than this many times over what a longest edge was. Larger follows the
-/// flow farther where it shears without end, at the rim of a core that goes through the surface, by its square in triangles;
-/// smaller leaves deep pulls coarse.
-const MOST_STRETCH: f64 = 8.0;
+/// How many times over one stroke halves what it has moved. Larger follows the flow farther where it stirs without end, as at the rim
+/// of a core that goes through the surface, where each time may double the triangles; smaller leaves deep pulls coarse.
+const MOST_HALVINGS: u8 = 4;
 
 impl Pass<'_> {
     /// Splits edges that are too long, longest first, and goes on with what that leaves.
     ///
     /// A new vertex lies in the middle of the edge on the surface as it stood when the stroke began, and is carried from there
     /// through all that the stroke did: it is where the flow takes that point, not in the middle of the ends.
+    ///
+    /// Where the stroke stirs the surface, that would never end: then edges stay, and the receipt tells how many.
     pub(super) fn split(
         &mut self,
         mut long: Vec<(f64, [u32; 2])>,
@@ -26,10 +28,8 @@ impl Pass<'_> {
             long.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             long.dedup_by_key(|(_, edge)| *edge);
             long.retain(|&(_, edge)| self.editable(edge, options).is_some());
-            let shortest2 = limits.longest2 / (MOST_STRETCH * MOST_STRETCH);
             long.retain(|(_, ends)| {
-                let [a, b] = ends.map(|vertex| self.stroke.base(self.surface, vertex));
-                let helps = a.distance_squared(b) > shortest2;
+                let helps = self.halvings(*ends) <= MOST_HALVINGS;
                 if !helps {
                     refused.push(*ends);
                 }
@@ -53,8 +53,9 @@ impl Pass<'_> {
             for ((&(_, ends), base), image) in long.iter().zip(bases).zip(images) {
                 // Other splits of this round leave the edge as it is. A point that is carried out of the range of numbers is none.
                 let Some(half_edge) = self.editable(ends, options).filter(|_| image.is_finite()) else { continue };
+                let halvings = self.halvings(ends);
                 let (split, gained) = self.surface.split(half_edge, image);
-                self.stroke.inserted.push(base);
+                self.stroke.inserted.push(Inserted { base, halvings });
                 self.stroke.splits.add(gained);
                 self.edited.extend(split.near.into_iter().chain(split.far.into_iter().flatten()));
                 self.done.inserted_vertices += 1;
@@ -66,5 +67,12 @@ impl Pass<'_> {
         refused.sort_unstable();
         refused.dedup();
         self.done.refused_splits = self.done.refused_splits.max(refused.len());
+    }
+
+    /// How many times a vertex between two others would be one of halving what the stroke has moved.
+    fn halvings(&self, ends: [u32; 2]) -> u8 {
+        let has_moved = ends.iter().any(|&end| self.stroke.base(self.surface, end) != self.surface.position(end));
+        let [one, other] = ends.map(|end| self.stroke.halvings(self.surface, end));
+        one.max(other) + u8::from(has_moved)
     }
 }
