@@ -430,7 +430,7 @@ pub unsafe extern "C" fn isochore_session_log(session: *const Session, recipe: *
     })
 }
 
-/// The surface as a mesh of its own. `lock` takes vertices where the host sees them, which keeps the volume of the mesh as opened.
+/// The surface as a mesh of its own. `lock` gives back the volume of the mesh as opened by the least displacement of what has moved.
 ///
 /// # Safety
 /// `session` is a handle; `mesh` can be written to.
