@@ -74,6 +74,7 @@ impl Session {
                 other => return Err(Failure::Argument(format!("normals are by \"area\" or \"angle\", not {other:?}"))),
             },
             mask: mask.map_or(Ok(default.mask), |given| keys::mask(given, mesh.positions.len()))?,
+            lock: default.lock,
             target: default.target,
         };
         let session = py.detach(|| session::Session::open(mesh, options)).map_err(Failure::input)?;
