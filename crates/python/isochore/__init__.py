@@ -13,9 +13,7 @@ Coordinates and lengths are in model units, arrays are C-contiguous. Arrays that
 read-only views of its memory. The interpreter's lock is released while isochore works.
 """
 
-from isochore._native import DistanceField, Error, Mesh, Session, Tool
-from isochore._native import CancelledError as Cancelled
-from isochore._native import RecipeFault as RecipeError
+from isochore._native import Cancelled, DistanceField, Error, Mesh, RecipeError, Session, Tool
 from isochore._recipe import Result, run, run_points
 
 __all__ = [

@@ -8,7 +8,10 @@ import numpy as np
 
 def to_json(data):
     """The text of `data`. Infinite numbers and those that are none have no place in it: ValueError."""
-    return json.dumps(data, default=_plain, allow_nan=False)
+    try:
+        return json.dumps(data, default=_plain, allow_nan=False)
+    except ValueError as problem:
+        raise ValueError(f"the numbers of a recipe must be finite: {problem}") from None
 
 
 def _plain(value):

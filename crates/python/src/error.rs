@@ -4,12 +4,12 @@
 use std::{fmt::Display, io};
 
 use isochore_mesh::{
-    Cancelled, DistanceFieldError, MeshError, SelfIntersectionError,
+    DistanceFieldError, MeshError, SelfIntersectionError,
     io::{ReadError, WriteError},
 };
 use isochore_sculpt::{
     ReplayError,
-    recipe::{Location, RecipeError},
+    recipe::{self, Location},
 };
 use pyo3::{
     PyErr, Python, create_exception,
@@ -25,11 +25,11 @@ create_exception!(
 );
 create_exception!(
     isochore,
-    RecipeFault,
+    RecipeError,
     Error,
     "A recipe that cannot be followed. `key` is the dotted path of what is wrong in it, `line` its line; None where unknown."
 );
-create_exception!(isochore, CancelledError, Error, "The `progress` function asked to stop.");
+create_exception!(isochore, Cancelled, Error, "The `progress` function asked to stop.");
 
 /// An error on its way to Python.
 #[derive(Debug)]
@@ -63,14 +63,14 @@ impl From<Failure> for PyErr {
             Failure::Argument(message) => PyValueError::new_err(message),
             Failure::Input(message) => Error::new_err(message),
             Failure::Recipe { message, key, line } => Python::attach(|py| {
-                let error = RecipeFault::new_err(message);
+                let error = RecipeError::new_err(message);
                 let value = error.value(py);
                 match value.setattr("key", key).and_then(|()| value.setattr("line", line)) {
                     Ok(()) => error,
                     Err(raised) => raised,
                 }
             }),
-            Failure::Cancelled => CancelledError::new_err("cancelled"),
+            Failure::Cancelled => Cancelled::new_err("cancelled"),
         }
     }
 }
@@ -81,8 +81,8 @@ impl From<PyErr> for Failure {
     }
 }
 
-impl From<Cancelled> for Failure {
-    fn from(_: Cancelled) -> Self {
+impl From<isochore_mesh::Cancelled> for Failure {
+    fn from(_: isochore_mesh::Cancelled) -> Self {
         Self::Cancelled
     }
 }
@@ -129,8 +129,8 @@ impl From<DistanceFieldError> for Failure {
     }
 }
 
-impl From<RecipeError> for Failure {
-    fn from(error: RecipeError) -> Self {
+impl From<recipe::RecipeError> for Failure {
+    fn from(error: recipe::RecipeError) -> Self {
         let line = if let Location::Line(line) = error.location { Some(line) } else { None };
         Self::Recipe { message: error.to_string(), key: Some(error.key), line }
     }

@@ -18,7 +18,7 @@ mod _native {
     #[pymodule_export]
     use crate::{
         distance::DistanceField,
-        error::{CancelledError, Error, RecipeFault},
+        error::{Cancelled, Error, RecipeError},
         mesh::Mesh,
         replay::LoadedRecipe,
         session::Session,

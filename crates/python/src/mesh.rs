@@ -10,6 +10,7 @@ use isochore_mesh::{
 };
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::{
+    exceptions::PyTypeError,
     prelude::*,
     types::{IntoPyDict, PyBytes, PyType},
 };
@@ -207,7 +208,11 @@ pub(crate) fn mesh_of(object: &Bound<'_, PyAny>) -> Result<Arc<TriMesh>, Failure
     if let Ok(mesh) = object.cast::<Mesh>() {
         return Ok(Arc::clone(&mesh.get().mesh));
     }
-    Ok(geometry(&object.getattr("vertices")?, &object.getattr("faces")?)?.into())
+    let (Ok(vertices), Ok(faces)) = (object.getattr("vertices"), object.getattr("faces")) else {
+        let text = format!("a mesh, or what has vertices and faces, is wanted, not {}", object.get_type().name()?);
+        return Err(Failure::Raised(PyTypeError::new_err(text)));
+    };
+    Ok(geometry(&vertices, &faces)?.into())
 }
 
 fn geometry(positions: &Bound<'_, PyAny>, indices: &Bound<'_, PyAny>) -> Result<TriMesh, Failure> {

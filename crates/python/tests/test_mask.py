@@ -55,7 +55,7 @@ def test_a_mask_as_a_recipe_has_it(ball):
         (np.full(2562, 2.0), isochore.Error, "mask.vertices.0"),
         ({"pin": []}, isochore.RecipeError, "pin"),
         ({"vertices": np.zeros(2562), "fade": -1}, isochore.Error, "fade"),
-        ({"fade": float("nan")}, ValueError, "JSON"),
+        ({"fade": float("nan")}, ValueError, "must be finite"),
         ({"fade": object()}, TypeError, "object"),
     ],
 )

@@ -74,6 +74,12 @@ def test_unusable_meshes_are_refused():
         isochore.Mesh([[0, 0, 0], [np.nan, 0, 0], [0, 1, 0]], [[0, 1, 2]])
 
 
+def test_what_is_no_mesh_is_refused():
+    for call in [isochore.Session, isochore.DistanceField, isochore.Mesh.from_trimesh]:
+        with pytest.raises(TypeError, match="vertices and faces, is wanted, not int"):
+            call(5)
+
+
 def test_attributes_come_back():
     uvs = np.arange(6.0).reshape(1, 3, 2)
     colors = np.linspace(0, 1, 12).reshape(3, 4)
