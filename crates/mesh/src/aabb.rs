@@ -30,6 +30,11 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// Whether the two have a point in common.
+    pub fn overlaps(self, other: Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
     /// This box grown by `margin` on every side.
     pub fn expanded(self, margin: f64) -> Self {
         Self { min: self.min - margin, max: self.max + margin }

@@ -23,11 +23,27 @@ impl<'a> ClosedMesh<'a> {
     /// # Errors
     /// The first defect found, by element.
     pub fn new(mesh: &'a TriMesh) -> Result<Self, MeshError> {
-        if mesh.triangles.is_empty() {
-            return Err(MeshError::Empty);
-        }
-        mesh.check_valid()?;
-        let topology = Topology::of(mesh);
+        Self::check_elements(mesh)?;
+        Self::check_edges(mesh, &Topology::of(mesh))
+    }
+
+    /// Checks `mesh`, whose edges are known already.
+    ///
+    /// # Errors
+    /// The first defect found, by element.
+    ///
+    /// # Panics
+    /// May panic if the topology is that of another mesh.
+    pub fn with_topology(mesh: &'a TriMesh, topology: &Topology) -> Result<Self, MeshError> {
+        Self::check_elements(mesh)?;
+        Self::check_edges(mesh, topology)
+    }
+
+    fn check_elements(mesh: &TriMesh) -> Result<(), MeshError> {
+        if mesh.triangles.is_empty() { Err(MeshError::Empty) } else { mesh.check_valid() }
+    }
+
+    fn check_edges(mesh: &'a TriMesh, topology: &Topology) -> Result<Self, MeshError> {
         for (edge, &ends) in topology.edges.iter().enumerate() {
             match *topology.half_edges(edge) {
                 _ if ends[0] == ends[1] => {

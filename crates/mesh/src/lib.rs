@@ -51,7 +51,7 @@ pub use edit_mesh::{
 };
 pub use grid_mesh::GridMesh;
 pub use journaled::{Delta, Journaled};
-pub use measure::{Components, EdgeLengths, signed_volume};
+pub use measure::{Components, EdgeLengths, VolumeFrame, signed_volume};
 pub use mesh_distance::MeshDistance;
 pub use monitor::{Cancelled, Monitor, Silent};
 pub use self_intersection::{SelfIntersectionError, SelfIntersections};
@@ -60,6 +60,6 @@ pub use surface_tree::{SurfaceHit, SurfaceTree};
 pub use topology::Topology;
 pub use tri_mesh::{
     CornerAttributes, Origin, Resampling, SkinError, SkinTable, SplitError, SubTriangle, Subdivision, TriMesh,
-    VertexAttributes, VertexOrigin,
+    TriangleSide, TriangleSplit, VertexAttributes, VertexOrigin,
 };
 pub use winding_number::WindingNumber;

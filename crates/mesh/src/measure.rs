@@ -30,12 +30,11 @@ pub struct Components {
 /// # Panics
 /// If an index is out of range.
 pub fn signed_volume(positions: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
-    let frame = Frame::of(positions);
+    let frame = VolumeFrame::of(positions);
     let [six_volumes] = sum_terms(triangles.len(), |triangle| {
-        let [a, b, c] = triangles[triangle].map(|vertex| frame.local(positions[vertex as usize]));
-        [a.dot(b.cross(c))]
+        [frame.six_volumes(triangles[triangle].map(|vertex| positions[vertex as usize]))]
     });
-    frame.world_volume(six_volumes / 6.0)
+    frame.volume(six_volumes)
 }
 
 /// Measures panic where an index is out of range; [`TriMesh::check`] finds such triangles.
@@ -60,7 +59,7 @@ impl TriMesh {
 
     /// [`volume`](Self::volume) and [`volume_centroid`](Self::volume_centroid) with one look at each triangle.
     pub(crate) fn volume_and_centroid(&self) -> (f64, DVec3) {
-        let frame = Frame::of(&self.positions);
+        let frame = VolumeFrame::of(&self.positions);
         let [six_volumes, x, y, z] = sum_terms(self.triangles.len(), |triangle| {
             let [a, b, c] = self.corners(triangle);
             let (a, b, c) = (frame.local(a), frame.local(b), frame.local(c));
@@ -73,12 +72,12 @@ impl TriMesh {
         } else {
             frame.world(DVec3::new(x, y, z) / (4.0 * six_volumes))
         };
-        (frame.world_volume(six_volumes / 6.0), centroid)
+        (frame.volume(six_volumes), centroid)
     }
 
     /// Area of all triangles, square model units.
     pub fn area(&self) -> f64 {
-        let frame = Frame::of(&self.positions);
+        let frame = VolumeFrame::of(&self.positions);
         let [twice_area] = sum_terms(self.triangles.len(), |triangle| {
             let [a, b, c] = self.corners(triangle).map(|corner| frame.local(corner));
             [(b - a).cross(c - a).length()]
@@ -92,7 +91,7 @@ impl TriMesh {
         if edges.is_empty() {
             return None;
         }
-        let frame = Frame::of(&self.positions);
+        let frame = VolumeFrame::of(&self.positions);
         let length = |edge: usize| {
             let [a, b] = edges[edge].map(|vertex| self.positions[vertex as usize]);
             ((b - a) / frame.scale).length()
@@ -158,14 +157,16 @@ const NO_VOLUME: f64 = 1e-12;
 
 /// Coordinates about the center of the bounds in units of a power of two near their size, so that products of three
 /// coordinates of a huge or tiny mesh neither overflow nor vanish. The scaling is exact.
-struct Frame {
+#[derive(Debug, Clone, Copy)]
+pub struct VolumeFrame {
     center: DVec3,
     /// A power of two.
     scale: f64,
 }
 
-impl Frame {
-    fn of(positions: &[DVec3]) -> Self {
+impl VolumeFrame {
+    /// About the center of the box around `positions`.
+    pub fn of(positions: &[DVec3]) -> Self {
         let bounds = Aabb::of(positions.iter().copied());
         let center = 0.5 * bounds.min + 0.5 * bounds.max;
         let reach = (0.5 * bounds.max - 0.5 * bounds.min).max_element();
@@ -176,6 +177,22 @@ impl Frame {
         Self { center, scale: libm::ldexp(1.0, exponent.clamp(-1021, 1023)) }
     }
 
+    /// Six times the signed volume between a triangle and the center, in units of the frame.
+    pub fn six_volumes(&self, corners: [DVec3; 3]) -> f64 {
+        let [a, b, c] = corners.map(|corner| self.local(corner));
+        a.dot(b.cross(c))
+    }
+
+    /// A sum of [`six_volumes`](Self::six_volumes), in cubic model units.
+    pub fn volume(&self, six_volumes: f64) -> f64 {
+        six_volumes / 6.0 * self.scale * self.scale * self.scale
+    }
+
+    /// Whether the center lies in a box.
+    pub fn is_centered_in(&self, bounds: Aabb) -> bool {
+        bounds.distance(self.center) == 0.0
+    }
+
     fn local(&self, point: DVec3) -> DVec3 {
         // As exact as to divide by it.
         (point - self.center) * (1.0 / self.scale)
@@ -183,10 +200,6 @@ impl Frame {
 
     fn world(&self, point: DVec3) -> DVec3 {
         point * self.scale + self.center
-    }
-
-    fn world_volume(&self, volume: f64) -> f64 {
-        volume * self.scale * self.scale * self.scale
     }
 }
 

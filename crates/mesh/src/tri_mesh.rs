@@ -7,6 +7,7 @@ mod skin_table;
 mod split;
 mod subdivided;
 mod transformed;
+mod triangle_split;
 mod welded;
 
 use glam::DVec3;
@@ -16,6 +17,7 @@ pub use resampled::{Origin, Resampling, VertexOrigin};
 pub use skin_table::{SkinError, SkinTable};
 pub use split::SplitError;
 pub use subdivided::{SubTriangle, Subdivision};
+pub use triangle_split::{TriangleSide, TriangleSplit};
 
 use crate::Assets;
 
