@@ -46,6 +46,8 @@ pub struct SessionOptions {
     pub weights: *const f64,
     /// Number of weights.
     pub weight_count: usize,
+    /// Whether strokes end as the flow leaves them, without the small displacement that gives back the volume exactly.
+    pub unlocked: bool,
     /// What else a recipe says under `mask`, in JSON: `{"pins": [...], "mirror": [...], "fade": 0.1}`.
     pub mask: *const c_char,
 }
@@ -165,6 +167,7 @@ pub unsafe extern "C" fn isochore_session_new(
             if options.undo_bytes != 0 {
                 chosen.undo_bytes = options.undo_bytes;
             }
+            chosen.lock = !options.unlocked;
             // SAFETY: as the caller promises.
             chosen.mask = unsafe { mask(options) }?;
         }

@@ -113,7 +113,10 @@ static void sessions(void) {
     CHECK(strstr(isochore_last_error(), "shape") && tool == NULL);
     CHECK(isochore_tool_new("ball", "{\"shape\": {\"kind\": \"sphere\", \"radius\": 0.3}, \"support\": 1}", NULL, 0, NULL, NULL,
                             &tool) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
+    IsochoreSessionOptions options;
+    memset(&options, 0, sizeof options);
+    options.unlocked = true;
+    CHECK(isochore_session_new(mesh, &options, &session) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_take_changes(session) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_changed(session, ISOCHORE_BUFFER_INDICES, &ranges, &count) == ISOCHORE_STATUS_OK);
     CHECK(count == 1 && ranges[0].start == 0 && ranges[0].end == 4);

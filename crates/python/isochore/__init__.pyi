@@ -212,6 +212,7 @@ class Session:
         undo_bytes: int | None = None,
         normals: Literal["area", "angle"] = "area",
         mask: ArrayLike | Mapping[str, Any] | None = None,
+        lock: bool = True,
     ) -> Self:
         """Opens a session on a manifold, oriented mesh.
 
@@ -219,6 +220,7 @@ class Session:
         oldest strokes are forgotten. normals: how triangles are weighted in vertex normals, by "area" or "angle".
         mask: a weight for each vertex, (V,), from 0, free, to 1, held; or what a recipe says under `mask`, {"pins": [...], "mirror": [...],
         "vertices": weights, "fade": length}. Vertices that are held keep their bits.
+        lock: whether each stroke ends with the volume of the mesh as opened, by a small displacement of what it has moved.
         """
 
     def begin_stroke(

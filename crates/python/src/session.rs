@@ -54,7 +54,7 @@ impl Drop for Hold {
 #[pymethods]
 impl Session {
     #[new]
-    #[pyo3(signature = (mesh, *, step = None, undo_bytes = None, normals = "area", mask = None))]
+    #[pyo3(signature = (mesh, *, step = None, undo_bytes = None, normals = "area", mask = None, lock = true))]
     fn new(
         py: Python<'_>,
         mesh: &Bound<'_, PyAny>,
@@ -62,6 +62,7 @@ impl Session {
         undo_bytes: Option<usize>,
         normals: &str,
         mask: Option<&Bound<'_, PyAny>>,
+        lock: bool,
     ) -> Result<Self, Failure> {
         let mesh = mesh_of(mesh)?;
         let default = SessionOptions::default();
@@ -74,7 +75,7 @@ impl Session {
                 other => return Err(Failure::Argument(format!("normals are by \"area\" or \"angle\", not {other:?}"))),
             },
             mask: mask.map_or(Ok(default.mask), |given| keys::mask(given, mesh.positions.len()))?,
-            lock: default.lock,
+            lock,
             target: default.target,
         };
         let session = py.detach(|| session::Session::open(mesh, options)).map_err(Failure::input)?;
@@ -142,6 +143,7 @@ impl Session {
             parts.into_py_dict(py)
         });
         dict.set_item("volume", volume.transpose()?)?;
+        dict.set_item("lock_max_shift", receipt.lock_max_shift)?;
         dict.set_item("undo_bytes", receipt.undo_bytes)?;
         dict.set_item("forgotten_strokes", receipt.forgotten_strokes)?;
         dict.set_item("seconds", receipt.seconds.total())?;
