@@ -3,12 +3,13 @@
 use web_time::Instant;
 
 use glam::DVec3;
-use isochore_mesh::{Cancelled, ClosedMesh, MeshError, Monitor, TriMesh, signed_volume};
+use isochore_mesh::{Cancelled, ClosedMesh, MeshError, Monitor, Topology, TriMesh, signed_volume};
 
 use crate::{
     JacobianRange, Note, Receipt, RefineOptions, Stamp, StampError, Stroke, StrokeReceipt,
+    flow::bits,
     guard::{choose_step, prepare_lock, refine_to_volume},
-    lock::lock_volume,
+    lock::Lock,
     press::{PressError, press},
     refine::{Criteria, Refinement, refine, resolve_field, untangle},
     tessellation::Tessellation,
@@ -96,7 +97,9 @@ pub fn deform(
     monitor: &dyn Monitor,
 ) -> Result<Deformed, DeformError> {
     mesh.check_valid()?;
-    let volume_before = ClosedMesh::new(mesh).is_ok().then(|| signed_volume(&mesh.positions, &mesh.triangles));
+    let topology = Topology::of(mesh);
+    let volume_before =
+        ClosedMesh::with_topology(mesh, &topology).is_ok().then(|| signed_volume(&mesh.positions, &mesh.triangles));
     if volume_before.is_some_and(|volume| !volume.is_finite()) {
         return Err(DeformError::VolumeOverflow);
     }
@@ -105,7 +108,8 @@ pub fn deform(
         return Err(DeformError::Stamp { stroke, source: StampError::NoVolume });
     }
     let mut receipt = Receipt { volume_before, ..Receipt::default() };
-    let mut tessellation = Tessellation::new(mesh);
+    let mut tessellation = Tessellation::new(mesh, &topology);
+    drop(topology);
     let criteria = options.refine.as_ref().map(|refine| Criteria::new(refine, &tessellation, volume_before));
 
     let mut facet_error = 0.0;
@@ -124,19 +128,20 @@ pub fn deform(
     if let Some(vertex) = tessellation.image.iter().position(|image| !image.is_finite()) {
         return Err(DeformError::Overflow { vertex });
     }
+    let mut locked = None;
     if let Some(volume) = volume_before.filter(|_| options.lock) {
         let begin = Instant::now();
         let prepared = prepare_lock(&mut tessellation, since_last_stamp(&strokes), criteria.as_ref(), volume, monitor)?;
         facet_error = prepared.facet_error.unwrap_or(facet_error);
+        locked = prepared.locked;
         receipt.notes.extend((prepared.crossing > 0).then_some(Note::LockCrossings { triangles: prepared.crossing }));
-        receipt.seconds.refine += begin.elapsed().as_secs_f64();
+        receipt.seconds.lock = begin.elapsed().as_secs_f64();
     }
     receipt.moved_vertices = count_different(&tessellation.rest, &tessellation.image);
     receipt.inserted_vertices = tessellation.rest.len() - mesh.positions.len();
 
-    let triangles = tessellation.indices();
     if let Some(volume) = volume_before {
-        let bare = signed_volume(&tessellation.image, &triangles);
+        let bare = tessellation.image_volume();
         receipt.volume_before_lock = Some(bare);
         receipt.facet_error = Some(facet_error);
         if let Some(change) = relative_change(volume, bare) {
@@ -145,9 +150,9 @@ pub fn deform(
         }
     }
     if options.lock {
-        lock(&mut tessellation, &triangles, &mut receipt);
+        lock(&mut tessellation, locked, &mut receipt);
     }
-    receipt.volume_after = volume_before.map(|_| signed_volume(&tessellation.image, &triangles));
+    receipt.volume_after = volume_before.map(|_| signed_volume(&tessellation.image, &tessellation.triangles));
     receipt.max_displacement = tessellation
         .rest
         .iter()
@@ -155,8 +160,10 @@ pub fn deform(
         .map(|(rest, image)| rest.distance(*image))
         .fold(0.0, f64::max);
 
-    let (subdivision, image) = tessellation.into_subdivision();
-    let rest = mesh.subdivided(&subdivision);
+    let (rest, image) = match tessellation.into_subdivision() {
+        (Some(subdivision), image) => (mesh.subdivided(&subdivision), image),
+        (None, image) => (mesh.clone(), image),
+    };
     let mut mesh = TriMesh { positions: image, ..rest.clone() };
     mesh.turn_normals(&rest.positions);
     Ok(Deformed { mesh, rest, strokes, receipt })
@@ -177,13 +184,14 @@ fn flow(
     monitor: &dyn Monitor,
 ) -> Result<f64, Cancelled> {
     let mut facet_error = 0.0;
+    let volume = mesh.image_volume();
     for index in 0..strokes.len() {
         let jacobian = choose_step(&mut strokes[index], receipt.strokes.len(), mesh, &mut receipt.notes, monitor)?;
         facet_error = apply(mesh, &strokes[..=index], jacobian, criteria, receipt, monitor)?;
     }
     match criteria {
         Some(criteria) => {
-            facet_error = refine_to_volume(mesh, strokes, criteria, facet_error, monitor)?;
+            facet_error = refine_to_volume(mesh, strokes, criteria, volume, facet_error, monitor)?;
             Ok(separate(mesh, strokes, criteria, receipt, monitor)?.unwrap_or(facet_error))
         }
         None => Ok(facet_error),
@@ -245,14 +253,11 @@ fn apply(
         None => Refinement::default(),
     };
     let resolve_end = Instant::now();
-    let before = mesh.image.clone();
-    let evaluations = mesh.advance(stroke, monitor)?;
+    let advance = mesh.advance(stroke, monitor)?;
     let advect_end = Instant::now();
-    let moved = count_different(&before, &mesh.image);
-    let known = before.len();
-    drop(before);
+    let known = mesh.image.len();
     let refined = refine(mesh, strokes, criteria, monitor)?;
-    let moved = moved + count_different(&mesh.rest[known..], &mesh.image[known..]);
+    let moved = advance.moved + count_different(&mesh.rest[known..], &mesh.image[known..]);
     let end = Instant::now();
 
     receipt.seconds.advect += (advect_end - resolve_end).as_secs_f64();
@@ -267,7 +272,7 @@ fn apply(
         receipt,
         StrokeReceipt {
             seconds: (end - begin).as_secs_f64(),
-            evaluations: resolved.evaluations + evaluations + refined.evaluations,
+            evaluations: resolved.evaluations + advance.evaluations + refined.evaluations,
             moved,
             inserted: resolved.inserted + refined.inserted,
             jacobian,
@@ -278,11 +283,11 @@ fn apply(
 }
 
 /// Adds a stroke to the receipt, with the change of the volume since the one before.
-fn conclude(mesh: &Tessellation, receipt: &mut Receipt, mut stroke: StrokeReceipt) {
+fn conclude(mesh: &mut Tessellation, receipt: &mut Receipt, mut stroke: StrokeReceipt) {
     let volume_so_far: f64 = receipt.strokes.iter().filter_map(|stroke| stroke.volume_change).sum();
     stroke.volume_change = receipt
         .volume_before
-        .and_then(|volume| relative_change(volume, signed_volume(&mesh.image, &mesh.indices())))
+        .and_then(|volume| relative_change(volume, mesh.image_volume()))
         .map(|change| change - volume_so_far);
     receipt.strokes.push(stroke);
 }
@@ -303,21 +308,19 @@ fn separate(
     Ok(facet_error)
 }
 
-fn lock(mesh: &mut Tessellation, triangles: &[[u32; 3]], receipt: &mut Receipt) {
-    let begin = Instant::now();
-    let note = match receipt.volume_before {
-        None => Some(Note::LockNeedsClosed),
-        Some(volume) => match lock_volume(&mesh.rest, &mut mesh.image, triangles, volume) {
-            None => Some(Note::LockSkipped),
-            Some(lock) => {
-                receipt.lock_max_shift = Some(lock.max_shift);
-                (lock.max_shift_per_edge > NOTABLE_LOCK_SHIFT)
-                    .then_some(Note::LockShift { ratio: lock.max_shift_per_edge })
-            }
-        },
+/// Moves the vertices to where they are `locked`, and writes the receipt.
+fn lock(mesh: &mut Tessellation, locked: Option<(Vec<DVec3>, Lock)>, receipt: &mut Receipt) {
+    let note = match locked {
+        None if receipt.volume_before.is_none() => Some(Note::LockNeedsClosed),
+        None => Some(Note::LockSkipped),
+        Some((image, lock)) => {
+            mesh.image = image;
+            receipt.lock_max_shift = Some(lock.max_shift);
+            let ratio = lock.max_shift_per_edge;
+            (ratio > NOTABLE_LOCK_SHIFT).then_some(Note::LockShift { ratio })
+        }
     };
     receipt.notes.extend(note);
-    receipt.seconds.lock = begin.elapsed().as_secs_f64();
 }
 
 /// Signed change of a volume as a share of its size, which a mesh inside out has too; none where there is no volume.
@@ -326,8 +329,7 @@ fn relative_change(before: f64, after: f64) -> Option<f64> {
 }
 
 fn count_different(before: &[DVec3], after: &[DVec3]) -> usize {
-    let bits = |point: &DVec3| point.to_array().map(f64::to_bits);
-    before.iter().zip(after).filter(|(before, after)| bits(before) != bits(after)).count()
+    before.iter().zip(after).filter(|&(&before, &after)| bits(before) != bits(after)).count()
 }
 
 #[cfg(test)]

@@ -4,12 +4,13 @@
 //! measured volume decides whether refinement goes on, and crossings that the lock would add decide whether it is given less to
 //! do. Each cure has a bounded number of rounds; what is left is told in the receipt.
 
-use isochore_mesh::{Cancelled, Monitor, signed_volume};
+use glam::DVec3;
+use isochore_mesh::{Cancelled, Monitor};
 use rustc_hash::FxHashSet;
 
 use crate::{
     JacobianRange, Note, Stroke,
-    lock::lock_volume,
+    lock::{Lock, lock_volume},
     refine::{Criteria, refine, untangle},
     tessellation::Tessellation,
 };
@@ -63,19 +64,19 @@ pub(crate) fn choose_step(
     Ok(Some(range))
 }
 
-/// Refines on where the measured change of the volume since the base is beyond what was asked for and facets account for it.
-/// Returns the facet error in the end.
+/// Refines on where the measured change since the base, whose volume is `volume`, is beyond what was asked for and facets
+/// account for it. Returns the facet error in the end.
 pub(crate) fn refine_to_volume(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
     criteria: &Criteria,
+    volume: f64,
     mut facet_error: f64,
     monitor: &dyn Monitor,
 ) -> Result<f64, Cancelled> {
     let mut finer = *criteria;
     for _ in 0..MAX_ROUNDS {
-        let triangles = mesh.indices();
-        let gained = signed_volume(&mesh.image, &triangles) - signed_volume(&mesh.base, &triangles);
+        let gained = mesh.image_volume() - volume;
         // What the flat triangles lack must be what is missing, or the time step is at fault, which refinement does not mend.
         let is_facets = (gained + facet_error).abs() < facet_error.abs();
         if !(gained.abs() > criteria.volume() && is_facets) {
@@ -91,13 +92,15 @@ pub(crate) fn refine_to_volume(
     Ok(facet_error)
 }
 
-/// What had to be done so that the lock does no harm.
-#[derive(Debug, Clone, Copy, Default)]
+/// The lock, and what had to be done so that it does no harm.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct LockPreparation {
     /// The facet error after refinement, if any was needed.
     pub(crate) facet_error: Option<f64>,
     /// Triangles that the lock makes cross all the same.
     pub(crate) crossing: usize,
+    /// Where the vertices go; none where the volume cannot be given back.
+    pub(crate) locked: Option<(Vec<DVec3>, Lock)>,
 }
 
 /// Refines until giving back `volume` makes nothing cross that did not: the shift of the lock can be more than the thickness of
@@ -112,7 +115,10 @@ pub(crate) fn prepare_lock(
     let mut preparation = LockPreparation::default();
     let mut finer = criteria.copied();
     for round in 0..=MAX_ROUNDS {
-        preparation.crossing = crossings_by_lock(mesh, volume, monitor)?;
+        let mut image = mesh.image.clone();
+        let lock = lock_volume(&mesh.rest, &mut image, &mesh.triangles, volume);
+        preparation.crossing = if lock.is_some() { crossings_by_lock(mesh, &image, monitor)? } else { 0 };
+        preparation.locked = lock.map(|lock| (image, lock));
         let Some(criteria) = finer.filter(|_| preparation.crossing > 0 && round < MAX_ROUNDS) else { break };
         let criteria = criteria.with_volume(FINER_FOR_LOCK * criteria.volume());
         finer = Some(criteria);
@@ -126,20 +132,13 @@ pub(crate) fn prepare_lock(
     Ok(preparation)
 }
 
-/// The number of triangles that cross once the lock has given back `volume`, and do not before.
-fn crossings_by_lock(mesh: &mut Tessellation, volume: f64, monitor: &dyn Monitor) -> Result<usize, Cancelled> {
-    let unlocked = mesh.image.clone();
-    let triangles = mesh.indices();
-    if lock_volume(&mesh.rest, &mut mesh.image, &triangles, volume).is_none() {
-        return Ok(0);
-    }
-    let locked = mesh.new_crossings(monitor);
-    mesh.image = unlocked;
-    let locked = locked?;
+/// The number of triangles that cross where the `locked` vertices are, and do not before.
+fn crossings_by_lock(mesh: &Tessellation, locked: &[DVec3], monitor: &dyn Monitor) -> Result<usize, Cancelled> {
+    let locked = mesh.new_crossings(locked, monitor)?;
     if locked.is_empty() {
         return Ok(0);
     }
-    let before: FxHashSet<u32> = mesh.new_crossings(monitor)?.into_iter().collect();
+    let before: FxHashSet<u32> = mesh.new_crossings(&mesh.image, monitor)?.into_iter().collect();
     Ok(locked.into_iter().filter(|triangle| !before.contains(triangle)).count())
 }
 

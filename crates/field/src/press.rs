@@ -89,7 +89,7 @@ pub(crate) fn press(
     criteria: Option<&Criteria>,
     monitor: &dyn Monitor,
 ) -> Result<Pressed, PressError> {
-    let volume = signed_volume(&mesh.image, &mesh.indices());
+    let volume = signed_volume(&mesh.image, &mesh.triangles);
     let mut pressed = Pressed::default();
     let mut ends = stamp.way().step_ends();
     let (duration, steps) = (ends[ends.len() - 1], ends.len());
@@ -123,7 +123,6 @@ pub(crate) fn press(
 
 /// Dents and raises the image once. False, and the image of no use, when the step must be shorter.
 fn step(mesh: &mut Tessellation, leg: &Leg<'_>, volume: f64, pressed: &mut Pressed) -> bool {
-    let triangles = mesh.indices();
     for round in 0..MAX_ROUNDS {
         let cause = if round == 0 { Cause::Motion } else { Cause::Raising };
         let near = contact::dent(&mut mesh.image, leg, cause);
@@ -131,14 +130,14 @@ fn step(mesh: &mut Tessellation, leg: &Leg<'_>, volume: f64, pressed: &mut Press
         if near.dented.is_empty() {
             return true;
         }
-        let rim = rim::Rim::new(&mesh.image, &triangles, &near, leg);
+        let rim = rim::Rim::new(&mesh.image, &mesh.triangles, &near, leg);
         if round == 0 {
             pressed.has_touched = true;
             pressed.is_through |= rim.is_through;
         }
         let dented = mesh.image.clone();
-        if balance(&mut mesh.image, &rim.directions, &triangles, volume).is_none()
-            || is_overstretched(&dented, &mesh.image, &triangles)
+        if balance(&mut mesh.image, &rim.directions, &mesh.triangles, volume).is_none()
+            || is_overstretched(&dented, &mesh.image, &mesh.triangles)
         {
             return false;
         }

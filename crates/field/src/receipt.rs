@@ -55,7 +55,7 @@ pub struct StageSeconds {
     pub advect: f64,
     /// Refinement, its own carrying of points included.
     pub refine: f64,
-    /// The volume lock.
+    /// The volume lock, the search for what it makes cross included, and refinement for that.
     pub lock: f64,
 }
 

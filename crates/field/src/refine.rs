@@ -3,14 +3,14 @@
 //! Three things split an edge: the image of its midpoint lies far from the middle of its ends; its image is long; or its
 //! triangle holds so much of the volume between flat and curved that the whole would miss the volume asked for.
 
-use isochore_mesh::{Aabb, Cancelled, Monitor, sum_terms};
+use isochore_mesh::{Aabb, Cancelled, Monitor};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::{
     Stroke,
-    facet_error::{SHARE_SEEN, edge_lengths},
-    tessellation::Tessellation,
+    facet_error::edge_lengths,
+    tessellation::{ChosenEdges, Tessellation},
 };
 
 /// When to split.
@@ -113,8 +113,8 @@ impl Criteria {
     /// The criteria for a mesh with the `image` it now has; `volume` is that of the closed mesh at rest, none of an open one.
     pub(crate) fn new(options: &RefineOptions, mesh: &Tessellation, volume: Option<f64>) -> Self {
         let deviation = options.deviation * Aabb::of(mesh.rest.iter().copied()).size().max_element();
-        let longest =
-            || (0..mesh.triangles.len()).flat_map(|index| edge_lengths(&mesh.image_of(index))).fold(0.0, f64::max);
+        let longest_of = |index: usize| edge_lengths(&mesh.image_of(index)).into_iter().fold(0.0, f64::max);
+        let longest = || (0..mesh.triangles.len()).into_par_iter().map(longest_of).reduce(|| 0.0, f64::max);
         Self {
             volume: volume.map_or(f64::INFINITY, |volume| options.volume * volume.abs()),
             deviation,
@@ -133,13 +133,27 @@ impl Refinement {
         self.is_limited |= other.is_limited;
     }
 
-    /// Splits the chosen edges, unless that would pass the limit on triangles; returns whether it did.
-    fn split(&mut self, mesh: &mut Tessellation, is_split: &[bool], criteria: &Criteria) -> bool {
-        self.is_limited = mesh.triangles_after(is_split) > criteria.max_triangles;
-        if !self.is_limited {
-            self.inserted += mesh.split(is_split);
+    /// Splits the chosen edges, and the longest ones of the triangles at them, unless there is nothing to split or that would
+    /// pass the limit on triangles. Returns the triangles that it made.
+    fn split(
+        &mut self,
+        mesh: &mut Tessellation,
+        strokes: &[Stroke],
+        mut chosen: ChosenEdges,
+        criteria: &Criteria,
+        monitor: &dyn Monitor,
+    ) -> Result<Option<Vec<u32>>, Cancelled> {
+        if chosen.half_edges().is_empty() {
+            return Ok(None);
         }
-        !self.is_limited
+        add_longest_edges(mesh, &mut chosen);
+        self.evaluations += mesh.carry_followed(strokes, monitor)?;
+        self.is_limited = mesh.triangles.len() + chosen.added() > criteria.max_triangles;
+        if self.is_limited {
+            return Ok(None);
+        }
+        self.inserted += chosen.half_edges().len();
+        Ok(Some(mesh.split(&chosen)))
     }
 }
 
@@ -151,46 +165,43 @@ pub(crate) fn resolve_field(
     criteria: &Criteria,
     monitor: &dyn Monitor,
 ) -> Result<Refinement, Cancelled> {
-    split_long_edges(mesh, past, criteria, monitor, |mesh| {
-        let long_edges = |index| {
-            let corners = mesh.image_of(index);
+    let reach = stroke.reach();
+    let near = mesh.triangles_in(reach);
+    split_long_edges(mesh, near, past, criteria, monitor, |mesh, triangles| {
+        let long_edges = |&index: &u32| {
+            let corners = mesh.image_of(index as usize);
+            if !Aabb::of(corners).overlaps(reach) {
+                return [None; 3];
+            }
             let center = (corners[0] + corners[1] + corners[2]) / 3.0;
             let radius = corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max);
             let allowed = stroke.feature_size_near(center, radius);
             let is_long = edge_lengths(&corners).map(|length| length > allowed);
-            if is_long.contains(&true) && stroke.may_touch(center, radius) { is_long } else { [false; 3] }
+            let is_met = is_long.contains(&true) && stroke.may_touch(center, radius);
+            std::array::from_fn(|side| (is_met && is_long[side]).then_some(3 * index + side as u32))
         };
-        (0..mesh.triangles.len()).into_par_iter().map(long_edges).collect()
+        triangles.par_iter().flat_map_iter(long_edges).flatten_iter().collect()
     })
 }
 
-/// Splits triangles until none has an edge that `long_edges` finds too long. It is asked again after every round, and answers
-/// for the edges 01, 12 and 20 of every triangle.
+/// Splits `triangles` until none has an edge that `long_edges` finds too long. It is asked for them, then for those that each
+/// round has made, and answers with half-edges.
 pub(crate) fn split_long_edges(
     mesh: &mut Tessellation,
+    mut triangles: Vec<u32>,
     strokes: &[Stroke],
     criteria: &Criteria,
     monitor: &dyn Monitor,
-    mut long_edges: impl FnMut(&Tessellation) -> Vec<[bool; 3]>,
+    mut long_edges: impl FnMut(&Tessellation, &[u32]) -> Vec<u32>,
 ) -> Result<Refinement, Cancelled> {
     let mut refinement = Refinement::default();
     for _ in 0..MAX_ROUNDS {
         monitor.check("refine", 0.0)?;
-        let is_long = long_edges(mesh);
-        if is_long.iter().all(|edges| *edges == [false; 3]) {
-            break;
-        }
-        refinement.evaluations += mesh.track(strokes, |_, index| is_long[index] != [false; 3], monitor)?;
-        let mut is_split = vec![false; mesh.midpoint_count()];
-        for (index, is_long) in is_long.into_iter().enumerate().filter(|(_, edges)| *edges != [false; 3]) {
-            let Some(midpoints) = mesh.midpoints_of(index) else { continue };
-            for (midpoint, is_long) in midpoints.into_iter().zip(is_long) {
-                is_split[midpoint as usize] |= is_long;
-            }
-        }
-        refinement.evaluations += add_longest_edges(mesh, strokes, &mut is_split, monitor)?;
-        if !refinement.split(mesh, &is_split, criteria) {
-            break;
+        let mut chosen = ChosenEdges::default();
+        long_edges(mesh, &triangles).into_iter().for_each(|half_edge| chosen.choose(mesh, half_edge));
+        match refinement.split(mesh, strokes, chosen, criteria, monitor)? {
+            Some(made) => triangles = made,
+            None => break,
         }
     }
     Ok(refinement)
@@ -207,20 +218,25 @@ pub(crate) fn refine(
     let mut refinement = Refinement::default();
     for round in 0..MAX_ROUNDS {
         monitor.check("refine", round as f64 / MAX_ROUNDS as f64)?;
-        refinement.evaluations += mesh.track(strokes, has_moved, monitor)?;
-        let gains: Vec<f64> = (0..mesh.triangles.len())
-            .into_par_iter()
-            .map(|index| mesh.curved(index).map_or(0.0, |curved| curved.volume_gain()))
-            .collect();
-        refinement.facet_error = sum_terms(gains.len(), |index| [gains[index]])[0] / SHARE_SEEN;
+        let changed = mesh.take_changed();
+        for &index in &changed {
+            if mesh.has_moved(index as usize) {
+                mesh.follow_edges_of(index);
+            }
+        }
+        refinement.evaluations += mesh.carry_followed(strokes, monitor)?;
+        // With the neighbors across the edges that are newly followed.
+        mesh.put_back(&changed);
+        let changed = mesh.take_changed();
+        mesh.update_gains(&changed);
+        refinement.facet_error = mesh.facet_error();
         let Some(criteria) = criteria else { break };
 
-        let mut is_split = edges_to_split(mesh, criteria, &gains, refinement.facet_error);
-        if !is_split.contains(&true) {
-            break;
-        }
-        refinement.evaluations += add_longest_edges(mesh, strokes, &mut is_split, monitor)?;
-        if !refinement.split(mesh, &is_split, criteria) {
+        let chosen = edges_to_split(mesh, criteria, &changed, refinement.facet_error);
+        if refinement.split(mesh, strokes, chosen, criteria, monitor)?.is_none() {
+            if refinement.is_limited {
+                mesh.put_back(&changed);
+            }
             break;
         }
     }
@@ -242,7 +258,7 @@ pub(crate) fn untangle(
     let most = mesh.triangles.len() + (UNTANGLING_GROWTH * mesh.triangles.len() as f64) as usize;
     for round in 0..MAX_UNTANGLING_ROUNDS {
         monitor.check("untangle", round as f64 / MAX_UNTANGLING_ROUNDS as f64)?;
-        let crossing = mesh.new_crossings(monitor)?;
+        let crossing = mesh.new_crossings(&mesh.image, monitor)?;
         let area = mesh.image_area(&crossing);
         // Compared over two rounds: the first split of a sliver may only turn its fold over.
         if crossing.is_empty() || area > WORTHWHILE * areas[0] {
@@ -252,25 +268,20 @@ pub(crate) fn untangle(
         // With all that is as coarse in the same triangles as read: at the end of a split row of slivers the next one folds.
         let mut coarsest: FxHashMap<u32, f64> = FxHashMap::default();
         for &index in &crossing {
-            let length = coarsest.entry(mesh.triangles[index as usize].parent).or_insert(0.0);
+            let length = coarsest.entry(mesh.parent(index as usize)).or_insert(0.0);
             *length = length.max(mesh.longest_base_edge(index as usize));
         }
-        let is_wanted = |mesh: &Tessellation, index: usize| {
-            let coarsest = coarsest.get(&mesh.triangles[index].parent);
+        let is_wanted = |index: usize| {
+            let coarsest = coarsest.get(&mesh.parent(index));
             coarsest.is_some_and(|&length| mesh.longest_base_edge(index) > AS_COARSE * length)
         };
-        refinement.evaluations += mesh.track(strokes, is_wanted, monitor)?;
-        let mut is_split = vec![false; mesh.midpoint_count()];
-        for index in (0..mesh.triangles.len()).filter(|&index| is_wanted(mesh, index)) {
-            for midpoint in mesh.midpoints_of(index).into_iter().flatten() {
-                is_split[midpoint as usize] = true;
-            }
+        let wanted: Vec<usize> = (0..mesh.triangles.len()).filter(|&index| is_wanted(index)).collect();
+        let mut chosen = ChosenEdges::default();
+        for half_edge in wanted.into_iter().flat_map(|index| 3 * index as u32..3 * index as u32 + 3) {
+            chosen.choose(mesh, half_edge);
         }
-        refinement.evaluations += add_longest_edges(mesh, strokes, &mut is_split, monitor)?;
-        if mesh.triangles_after(&is_split) > most {
-            break;
-        }
-        if !refinement.split(mesh, &is_split, criteria) {
+        let limit = Criteria { max_triangles: criteria.max_triangles.min(most), ..*criteria };
+        if refinement.split(mesh, strokes, chosen, &limit, monitor)?.is_none() {
             break;
         }
     }
@@ -283,65 +294,53 @@ pub(crate) fn untangle(
 /// Without this a triangle can lose its two shorter edges again and again, its longest always just within the criteria, and
 /// shrink to a sliver along it, to no end. Where the image is so stretched that this happens in the base all the same, the
 /// longest edge there is split.
-fn add_longest_edges(
-    mesh: &mut Tessellation,
-    strokes: &[Stroke],
-    is_split: &mut Vec<bool>,
-    monitor: &dyn Monitor,
-) -> Result<u64, Cancelled> {
-    let mut evaluations = 0;
-    loop {
-        let known = mesh.midpoint_count();
-        evaluations += mesh.track(strokes, |mesh, index| mesh.is_triangle_split(index, is_split), monitor)?;
-        is_split.resize(mesh.midpoint_count(), false);
-        let mut has_changed = mesh.midpoint_count() > known;
-        for index in 0..mesh.triangles.len() {
-            if !mesh.is_triangle_split(index, is_split) {
-                continue;
-            }
-            let Some(midpoints) = mesh.midpoints_of(index) else { continue };
-            let lengths = if mesh.is_sliver_in_base(index) {
-                edge_lengths(&mesh.base_of(index))
+fn add_longest_edges(mesh: &mut Tessellation, chosen: &mut ChosenEdges) {
+    let mut place = 0;
+    while let Some(&first) = chosen.half_edges().get(place) {
+        let mut half_edge = first;
+        loop {
+            let triangle = half_edge as usize / 3;
+            let lengths = if mesh.is_sliver_in_base(triangle) {
+                edge_lengths(&mesh.base_of(triangle))
             } else {
-                edge_lengths(&mesh.image_of(index))
+                edge_lengths(&mesh.image_of(triangle))
             };
             let longest = (0..3).fold(0, |longest, edge| if lengths[edge] > lengths[longest] { edge } else { longest });
-            let chosen = &mut is_split[midpoints[longest] as usize];
-            has_changed |= !*chosen;
-            *chosen = true;
+            chosen.choose(mesh, (3 * triangle + longest) as u32);
+            half_edge = mesh.next_around(half_edge);
+            if half_edge == first {
+                break;
+            }
         }
-        if !has_changed {
-            return Ok(evaluations);
-        }
+        place += 1;
     }
 }
 
-fn has_moved(mesh: &Tessellation, triangle: usize) -> bool {
-    mesh.triangles[triangle].vertices.iter().any(|&vertex| mesh.image[vertex as usize] != mesh.base[vertex as usize])
-}
-
-/// By number of midpoint, whether its edge is to be split.
-fn edges_to_split(mesh: &Tessellation, criteria: &Criteria, gains: &[f64], facet_error: f64) -> Vec<bool> {
-    let mut is_split = vec![false; mesh.midpoint_count()];
-    for index in 0..mesh.triangles.len() {
-        let (Some(curved), Some(midpoints)) = (mesh.curved(index), mesh.midpoints_of(index)) else { continue };
+/// Of the triangles that have `changed` the edges that deviate or are too long, and of all the edges of those that hold too much
+/// of the facet error.
+fn edges_to_split(mesh: &mut Tessellation, criteria: &Criteria, changed: &[u32], facet_error: f64) -> ChosenEdges {
+    let mut chosen = ChosenEdges::default();
+    for &index in changed {
+        let Some(curved) = mesh.curved(index as usize) else { continue };
         let (deviations, lengths) = (curved.deviations(), curved.lengths());
-        let base_lengths = edge_lengths(&mesh.base_of(index));
+        let base_lengths = edge_lengths(&mesh.base_of(index as usize));
         for edge in 0..3 {
             let is_wanted = deviations[edge].length() > criteria.deviation || lengths[edge] > criteria.max_edge;
-            is_split[midpoints[edge] as usize] |= is_wanted && base_lengths[edge] > criteria.shortest;
+            if is_wanted && base_lengths[edge] > criteria.shortest {
+                chosen.choose(mesh, 3 * index + edge as u32);
+            }
         }
     }
-    for index in triangles_to_split(gains, facet_error, criteria.volume) {
-        let (Some(curved), Some(midpoints)) = (mesh.curved(index), mesh.midpoints_of(index)) else { continue };
+    for index in triangles_to_split(mesh.gains(), facet_error, criteria.volume) {
+        let Some(curved) = mesh.curved(index) else { continue };
         let normal = curved.normal();
         let heights = curved.deviations().map(|deviation| deviation.dot(normal).abs());
         let least = SIGNIFICANT * heights.into_iter().fold(0.0, f64::max);
-        for edge in 0..3 {
-            is_split[midpoints[edge] as usize] |= heights[edge] >= least;
+        for edge in (0..3).filter(|&edge| heights[edge] >= least) {
+            chosen.choose(mesh, (3 * index + edge) as u32);
         }
     }
-    is_split
+    chosen
 }
 
 /// The fewest triangles, by their share of the facet error, whose split should bring it well below what is `allowed`.

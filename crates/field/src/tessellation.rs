@@ -4,15 +4,40 @@
 //! never the middle of the images: that is what brings the surface closer to the true image. The base is the mesh at rest
 //! until something that is no flow acts: then the image [is frozen](Tessellation::freeze) and becomes the base of what follows,
 //! while the rest goes on to tell where every vertex came from.
+//!
+//! A stroke touches a part of the surface, and what is done for it should cost what that part costs. So the triangles that have
+//! [changed](Tessellation::take_changed) are listed, a triangle that is split keeps its number for the first of its parts, and
+//! every edge knows the half-edges along it.
+
+mod blocks;
+mod chosen_edges;
+mod crossings;
+mod edge_cycles;
+mod split;
+
+use std::ops::Range;
 
 use glam::DVec3;
-use isochore_mesh::{Cancelled, Monitor, SelfIntersectionError, SelfIntersections, SubTriangle, Subdivision, TriMesh};
-use rustc_hash::{FxHashMap, FxHashSet};
+use isochore_mesh::{
+    Aabb, Cancelled, CompensatedSum, Monitor, SubTriangle, Subdivision, Topology, TriMesh, VolumeFrame,
+};
+use rayon::prelude::*;
 
-use crate::{Stroke, facet_error::edge_lengths, flow};
+use blocks::Blocks;
+pub(crate) use chosen_edges::ChosenEdges;
+use edge_cycles::EdgeCycles;
+
+use crate::{
+    Stroke,
+    facet_error::{SHARE_SEEN, edge_lengths},
+    flow::{self, CHUNK, Passage},
+};
 
 /// The edge's midpoint is not followed.
-const UNTRACKED: u32 = u32::MAX;
+const UNFOLLOWED: u32 = u32::MAX;
+
+/// The triangle is one of the mesh as read.
+const WHOLE: u32 = u32::MAX;
 
 /// A triangle whose height is less than this share of its longest edge is a sliver. Larger takes what the image needs long
 /// and thin at rest for slivers; smaller lets real ones get thinner before they are halved.
@@ -26,18 +51,66 @@ pub(crate) struct Tessellation {
     /// Where the flow that leads to the image set out.
     pub(crate) base: Vec<DVec3>,
     pub(crate) image: Vec<DVec3>,
-    pub(crate) triangles: Vec<SubTriangle>,
-    /// For each triangle the midpoints of its edges 01, 12 and 20.
-    midpoints_of: Vec<[u32; 3]>,
+    /// Vertex indices; those of the mesh as read, or their first parts, come first.
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// By triangle, its number among the parts.
+    part_of: Vec<u32>,
+    parts: Vec<Part>,
+    edges: EdgeCycles,
     midpoints: Midpoints,
+    /// By triangle, the volume between it and its curved image, as far as that is known.
+    gains: Vec<f64>,
+    /// Sums of these, by block of triangles.
+    gain_sums: Blocks<f64>,
+    /// By block of triangles.
+    shapes: Blocks<Shape>,
+    /// Boxes around the images of each block of vertices.
+    vertex_bounds: Blocks<Aabb>,
+    /// In which the volumes of the shapes are.
+    frame: VolumeFrame,
+    /// Triangles whose images have changed since they were last taken; in any order, some more than once.
+    changed: Vec<u32>,
+}
+
+/// Images of a block of triangles.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    /// Box around the corners and the midpoints that are followed.
+    bounds: Aabb,
+    /// Six times the volume between them and the center of the frame.
+    six_volumes: f64,
+}
+
+/// What of a triangle of the mesh as read a triangle is.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    parent: u32,
+    /// Barycentric coordinates of the corners in the parent.
+    corners: [DVec3; 3],
 }
 
 /// Midpoints of edges of the base, and their images.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 struct Midpoints {
-    of_edge: FxHashMap<[u32; 2], u32>,
+    /// By half-edge; all along an edge agree.
+    of_half_edge: Vec<u32>,
     base: Vec<DVec3>,
     image: Vec<DVec3>,
+    /// Boxes around the images of each block of them.
+    bounds: Blocks<Aabb>,
+    /// Half-edges at those whose image is not known yet.
+    pending: Vec<u32>,
+    /// Numbers that can be given again.
+    unused: Vec<u32>,
+}
+
+/// What a stroke did to the images.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Advance {
+    /// Evaluations of the field.
+    pub(crate) evaluations: u64,
+    /// Vertices that it moved.
+    pub(crate) moved: usize,
 }
 
 /// A triangle's image together with the images of its edges' midpoints.
@@ -50,97 +123,209 @@ pub(crate) struct CurvedTriangle {
 }
 
 impl Tessellation {
-    /// The triangles of `mesh` as they are, at rest.
-    pub(crate) fn new(mesh: &TriMesh) -> Self {
-        let triangles: Vec<SubTriangle> = (0u32..)
-            .zip(&mesh.triangles)
-            .map(|(parent, &vertices)| SubTriangle { vertices, parent, corners: [DVec3::X, DVec3::Y, DVec3::Z] })
-            .collect();
+    /// The triangles of `mesh` as they are, at rest; `topology` is that of `mesh`.
+    pub(crate) fn new(mesh: &TriMesh, topology: &Topology) -> Self {
+        let count = mesh.triangles.len();
         Self {
             rest: mesh.positions.clone(),
             base: mesh.positions.clone(),
             image: mesh.positions.clone(),
-            midpoints_of: vec![[UNTRACKED; 3]; triangles.len()],
-            triangles,
-            midpoints: Midpoints::default(),
+            triangles: mesh.triangles.clone(),
+            part_of: vec![WHOLE; count],
+            parts: Vec::new(),
+            edges: EdgeCycles::new(topology),
+            midpoints: Midpoints::none(vec![UNFOLLOWED; 3 * count]),
+            gains: vec![0.0; count],
+            gain_sums: Blocks::NONE,
+            shapes: Blocks::NONE,
+            vertex_bounds: Blocks::NONE,
+            frame: VolumeFrame::of(&mesh.positions),
+            changed: Vec::new(),
         }
     }
 
-    /// Makes the image the base of what follows; no midpoint is followed any more.
+    /// Makes the image the base of what follows, whatever has become of it; no midpoint is followed any more.
     pub(crate) fn freeze(&mut self) {
         self.base.clone_from(&self.image);
-        self.midpoints = Midpoints::default();
-        self.midpoints_of.fill([UNTRACKED; 3]);
+        if !self.midpoints.base.is_empty() {
+            let mut of_half_edge = std::mem::take(&mut self.midpoints.of_half_edge);
+            of_half_edge.fill(UNFOLLOWED);
+            self.midpoints = Midpoints::none(of_half_edge);
+        }
+        self.gains.fill(0.0);
+        self.gain_sums.forget_all();
+        self.shapes.forget_all();
+        self.vertex_bounds.forget_all();
+        self.changed.clear();
     }
 
-    /// Vertex indices of all triangles.
-    pub(crate) fn indices(&self) -> Vec<[u32; 3]> {
-        self.triangles.iter().map(|triangle| triangle.vertices).collect()
+    /// The rest surface, as finely split as this, if it is split at all; and the images of its vertices.
+    pub(crate) fn into_subdivision(self) -> (Option<Subdivision>, Vec<DVec3>) {
+        if self.parts.is_empty() {
+            return (None, self.image);
+        }
+        let triangle = |(index, &vertices): (usize, &[u32; 3])| {
+            let Part { parent, corners } = self.part(index);
+            SubTriangle { vertices, parent, corners }
+        };
+        let triangles = self.triangles.par_iter().enumerate().map(triangle).collect();
+        (Some(Subdivision { triangles, positions: self.rest }), self.image)
     }
 
-    /// The rest surface, as finely split as this.
-    pub(crate) fn into_subdivision(self) -> (Subdivision, Vec<DVec3>) {
-        (Subdivision { positions: self.rest, triangles: self.triangles }, self.image)
+    /// The triangle of the mesh as read that holds this one.
+    pub(crate) fn parent(&self, triangle: usize) -> u32 {
+        self.part(triangle).parent
     }
 
-    /// Carries all images through one more stroke; returns the evaluations of the field.
-    pub(crate) fn advance(&mut self, stroke: &Stroke, monitor: &dyn Monitor) -> Result<u64, Cancelled> {
-        let stroke = std::slice::from_ref(stroke);
-        Ok(flow::advance(&mut self.image, stroke, monitor)?
-            + flow::advance(&mut self.midpoints.image, stroke, monitor)?)
+    fn part(&self, triangle: usize) -> Part {
+        match self.part_of[triangle] {
+            WHOLE => Part { parent: triangle as u32, corners: DVec3::AXES },
+            part => self.parts[part as usize],
+        }
     }
 
-    /// From now on follows the edge midpoints of every triangle for which `is_wanted`, carried through the `strokes` since the
-    /// base.
-    /// Returns the evaluations of the fields.
-    pub(crate) fn track(
-        &mut self,
-        strokes: &[Stroke],
-        is_wanted: impl Fn(&Self, usize) -> bool,
-        monitor: &dyn Monitor,
-    ) -> Result<u64, Cancelled> {
-        let known = self.midpoints.base.len();
-        let mut is_tracked_vertex = vec![false; self.rest.len()];
-        for index in 0..self.triangles.len() {
-            let vertices = self.triangles[index].vertices;
-            if self.midpoints_of[index].contains(&UNTRACKED) && is_wanted(self, index) {
-                self.midpoints_of[index] = edges(vertices).map(|edge| self.midpoints.find_or_insert(edge, &self.base));
+    /// Carries all images through one more stroke.
+    pub(crate) fn advance(&mut self, stroke: &Stroke, monitor: &dyn Monitor) -> Result<Advance, Cancelled> {
+        let near = self.triangles_in(stroke.reach());
+        let vertices = advance_images(&mut self.image, &mut self.vertex_bounds, stroke, monitor)?;
+        let midpoints = advance_images(&mut self.midpoints.image, &mut self.midpoints.bounds, stroke, monitor)?;
+        let is_moved = flags(self.image.len(), &vertices.moved);
+        let is_midpoint_moved = flags(self.midpoints.image.len(), &midpoints.moved);
+        let has_changed = |&index: &u32| {
+            let midpoints = self.midpoints_of(index as usize);
+            self.triangles[index as usize].iter().any(|&vertex| is_moved[vertex as usize])
+                || midpoints.iter().any(|&point| point != UNFOLLOWED && is_midpoint_moved[point as usize])
+        };
+        let changed: Vec<u32> = near.into_par_iter().filter(has_changed).collect();
+        self.report_changed(&changed);
+        Ok(Advance { evaluations: vertices.evaluations + midpoints.evaluations, moved: vertices.moved.len() })
+    }
+
+    /// The triangles in blocks whose images, or those of their midpoints, reach into a box; in ascending order.
+    pub(crate) fn triangles_in(&mut self, bounds: Aabb) -> Vec<u32> {
+        let count = self.triangles.len();
+        let blocks = self.know_shapes().enumerate().filter(|(_, shape)| shape.bounds.overlaps(bounds));
+        let triangles = |block: usize| (block * CHUNK) as u32..count.min((block + 1) * CHUNK) as u32;
+        blocks.flat_map(|(block, _)| triangles(block)).collect()
+    }
+
+    /// Signed volume inside the images of the triangles.
+    pub(crate) fn image_volume(&mut self) -> f64 {
+        let bounds = self.know_shapes().fold(Aabb::EMPTY, |bounds, shape| bounds.union(shape.bounds));
+        // Far from where it was the sum would lose digits.
+        if !self.frame.is_centered_in(bounds) {
+            self.frame = VolumeFrame::of(&self.image);
+            self.shapes.forget_all();
+        }
+        let six_volumes = sum(self.know_shapes().map(|shape| shape.six_volumes));
+        self.frame.volume(six_volumes)
+    }
+
+    fn know_shapes(&mut self) -> impl Iterator<Item = Shape> {
+        let mut shapes = std::mem::replace(&mut self.shapes, Blocks::NONE);
+        let learn = |triangles: Range<usize>| {
+            let midpoints = triangles.clone().flat_map(|index| self.midpoints_of(index));
+            let midpoints = midpoints.filter(|&midpoint| midpoint != UNFOLLOWED);
+            let midpoints = midpoints.map(|midpoint| self.midpoints.image[midpoint as usize]);
+            let corners = triangles.clone().flat_map(|index| self.image_of(index));
+            Shape {
+                bounds: Aabb::of(corners.chain(midpoints)),
+                six_volumes: sum(triangles.map(|index| self.frame.six_volumes(self.image_of(index)))),
             }
-            if !self.midpoints_of[index].contains(&UNTRACKED) {
-                vertices.into_iter().for_each(|vertex| is_tracked_vertex[vertex as usize] = true);
+        };
+        shapes.know(self.triangles.len(), learn);
+        self.shapes = shapes;
+        self.shapes.iter()
+    }
+
+    /// Remembers that triangles have changed.
+    fn report_changed(&mut self, triangles: &[u32]) {
+        self.changed.extend_from_slice(triangles);
+        for &index in triangles {
+            self.shapes.forget(index as usize);
+            self.gain_sums.forget(index as usize);
+        }
+    }
+
+    /// Triangles whose images, or those of the midpoints at them, have changed since this was last asked, and new ones; in
+    /// ascending order.
+    pub(crate) fn take_changed(&mut self) -> Vec<u32> {
+        let mut changed = std::mem::take(&mut self.changed);
+        changed.par_sort_unstable();
+        changed.dedup();
+        changed
+    }
+
+    /// Has triangles be told again as changed.
+    pub(crate) fn put_back(&mut self, changed: &[u32]) {
+        self.changed.extend_from_slice(changed);
+    }
+
+    /// From now on follows the midpoint of the edge of a half-edge, and returns its number. Its image is not known until the
+    /// next [`carry_followed`](Self::carry_followed).
+    fn follow(&mut self, half_edge: u32) -> u32 {
+        let known = self.midpoints.of_half_edge[half_edge as usize];
+        if known != UNFOLLOWED {
+            return known;
+        }
+        let middle = middle(self.ends(half_edge), &self.base);
+        let midpoints = &mut self.midpoints;
+        let number = midpoints.unused.pop().unwrap_or_else(|| {
+            midpoints.base.push(DVec3::ZERO);
+            midpoints.image.push(DVec3::ZERO);
+            midpoints.base.len() as u32 - 1
+        });
+        midpoints.bounds.forget(number as usize);
+        midpoints.base[number as usize] = middle;
+        midpoints.image[number as usize] = middle;
+        midpoints.pending.push(half_edge);
+        self.edges.around(half_edge).for_each(|half_edge| midpoints.of_half_edge[half_edge as usize] = number);
+        number
+    }
+
+    /// From now on follows the midpoints of a triangle's edges.
+    pub(crate) fn follow_edges_of(&mut self, triangle: u32) {
+        (0..3).for_each(|side| _ = self.follow(3 * triangle + side));
+    }
+
+    /// Carries the midpoints that are newly followed through the `strokes` since the base, which has changed the triangles at
+    /// those that move. Returns the evaluations of the fields.
+    pub(crate) fn carry_followed(&mut self, strokes: &[Stroke], monitor: &dyn Monitor) -> Result<u64, Cancelled> {
+        let midpoints = &mut self.midpoints;
+        let pending = std::mem::take(&mut midpoints.pending);
+        let number = |half_edge: u32| midpoints.of_half_edge[half_edge as usize] as usize;
+        let mut points: Vec<DVec3> = pending.iter().map(|&half_edge| midpoints.base[number(half_edge)]).collect();
+        let evaluations = flow::advance(&mut points, strokes, monitor)?;
+        let mut changed = Vec::new();
+        for (&half_edge, point) in pending.iter().zip(points) {
+            let number = midpoints.of_half_edge[half_edge as usize] as usize;
+            midpoints.image[number] = point;
+            if point != midpoints.base[number] {
+                changed.extend(self.edges.around(half_edge).map(|half_edge| half_edge / 3));
             }
         }
-        // Both sides of an edge must know its midpoint, or splitting one would tear the surface.
-        for (triangle, midpoints) in self.triangles.iter().zip(&mut self.midpoints_of) {
-            for (edge, midpoint) in edges(triangle.vertices).into_iter().zip(midpoints) {
-                if *midpoint == UNTRACKED && edge.iter().all(|&vertex| is_tracked_vertex[vertex as usize]) {
-                    *midpoint = self.midpoints.find(edge).unwrap_or(UNTRACKED);
-                }
-            }
-        }
-        self.midpoints.image.extend_from_slice(&self.midpoints.base[known..]);
-        flow::advance(&mut self.midpoints.image[known..], strokes, monitor)
+        self.report_changed(&changed);
+        Ok(evaluations)
     }
 
-    /// The number of midpoints that are or were followed; they are numbered below this.
-    pub(crate) fn midpoint_count(&self) -> usize {
-        self.midpoints.base.len()
+    /// The half-edges along the edge of one of them.
+    pub(crate) fn next_around(&self, half_edge: u32) -> u32 {
+        self.edges.next(half_edge)
     }
 
-    /// The midpoints of a triangle's edges 01, 12 and 20, if all are followed.
-    pub(crate) fn midpoints_of(&self, triangle: usize) -> Option<[u32; 3]> {
-        let midpoints = self.midpoints_of[triangle];
-        (!midpoints.contains(&UNTRACKED)).then_some(midpoints)
+    /// Whether a vertex of a triangle is not where it is in the base.
+    pub(crate) fn has_moved(&self, triangle: usize) -> bool {
+        self.triangles[triangle].iter().any(|&vertex| self.image[vertex as usize] != self.base[vertex as usize])
     }
 
     /// Images of the corners of a triangle.
     pub(crate) fn image_of(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].vertices.map(|vertex| self.image[vertex as usize])
+        self.triangles[triangle].map(|vertex| self.image[vertex as usize])
     }
 
     /// Corners of a triangle in the base.
     pub(crate) fn base_of(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].vertices.map(|vertex| self.base[vertex as usize])
+        self.triangles[triangle].map(|vertex| self.base[vertex as usize])
     }
 
     /// Whether a triangle of the base is much lower than long.
@@ -157,24 +342,10 @@ impl Tessellation {
 
     /// The triangle's image with its midpoints, if all are followed.
     pub(crate) fn curved(&self, triangle: usize) -> Option<CurvedTriangle> {
-        let midpoints = self.midpoints_of(triangle)?.map(|midpoint| self.midpoints.image[midpoint as usize]);
-        Some(CurvedTriangle { corners: self.image_of(triangle), midpoints })
-    }
-
-    /// Triangles whose images cross others, while in the base nothing crosses within the triangles of the mesh as read that
-    /// hold them; in ascending order.
-    pub(crate) fn new_crossings(&self, monitor: &dyn Monitor) -> Result<Vec<u32>, Cancelled> {
-        let found = crossing_pairs(&self.image, self.indices(), monitor)?;
-        if found.is_empty() {
-            return Ok(Vec::new());
-        }
-        let in_base: FxHashSet<[u32; 2]> =
-            crossing_pairs(&self.base, self.indices(), monitor)?.into_iter().map(|pair| self.parents(pair)).collect();
-        let mut crossing: Vec<u32> =
-            found.into_iter().filter(|&pair| !in_base.contains(&self.parents(pair))).flatten().collect();
-        crossing.sort_unstable();
-        crossing.dedup();
-        Ok(crossing)
+        let midpoints = self.midpoints_of(triangle);
+        let image = |midpoint: u32| self.midpoints.image[midpoint as usize];
+        (!midpoints.contains(&UNFOLLOWED))
+            .then(|| CurvedTriangle { corners: self.image_of(triangle), midpoints: midpoints.map(image) })
     }
 
     /// Sum of the areas of the images of some triangles.
@@ -186,138 +357,82 @@ impl Tessellation {
         triangles.iter().map(area).sum()
     }
 
-    fn parents(&self, pair: [u32; 2]) -> [u32; 2] {
-        let [a, b] = pair.map(|triangle| self.triangles[triangle as usize].parent);
-        [a.min(b), a.max(b)]
-    }
-
-    /// Whether an edge of the triangle is chosen.
-    pub(crate) fn is_triangle_split(&self, triangle: usize, is_split: &[bool]) -> bool {
-        self.midpoints_of[triangle].iter().any(|&midpoint| chosen(is_split, midpoint))
-    }
-
-    /// Triangles that [`split`](Self::split) would leave.
-    pub(crate) fn triangles_after(&self, is_split: &[bool]) -> usize {
-        let added = |midpoints: &[u32; 3]| midpoints.iter().filter(|&&midpoint| chosen(is_split, midpoint)).count();
-        self.triangles.len() + self.midpoints_of.iter().map(added).sum::<usize>()
-    }
-
-    /// Splits the edges whose midpoints are chosen, and every triangle at them: into two, three or four by the number of its
-    /// chosen edges, so that both sides of an edge agree. Returns the number of vertices inserted.
-    pub(crate) fn split(&mut self, is_split: &[bool]) -> usize {
-        let before = self.rest.len();
-        let mut vertex_of = vec![UNTRACKED; is_split.len()];
-        let mut triangles = Vec::with_capacity(self.triangles_after(is_split));
-        let mut midpoints_of = Vec::with_capacity(triangles.capacity());
-        for (triangle, midpoints) in self.triangles.iter().zip(&self.midpoints_of) {
-            let edges = edges(triangle.vertices);
-            let inserted: [Option<u32>; 3] = std::array::from_fn(|edge| {
-                let midpoint = midpoints[edge];
-                chosen(is_split, midpoint).then(|| {
-                    let vertex = &mut vertex_of[midpoint as usize];
-                    if *vertex == UNTRACKED {
-                        *vertex = self.rest.len() as u32;
-                        self.rest.push(middle(edges[edge], &self.rest));
-                        self.base.push(self.midpoints.base[midpoint as usize]);
-                        self.image.push(self.midpoints.image[midpoint as usize]);
-                    }
-                    *vertex
-                })
-            });
-            if inserted == [None; 3] {
-                triangles.push(*triangle);
-                midpoints_of.push(*midpoints);
-            } else {
-                split_triangle(triangle, inserted, &self.image, &mut triangles);
-                midpoints_of.resize(triangles.len(), [UNTRACKED; 3]);
-            }
+    /// Learns the volume between some triangles and their curved images.
+    pub(crate) fn update_gains(&mut self, triangles: &[u32]) {
+        let gain = |&index: &u32| self.curved(index as usize).map_or(0.0, |curved| curved.volume_gain());
+        let gains: Vec<f64> = triangles.par_iter().map(gain).collect();
+        for (&index, gain) in triangles.iter().zip(gains) {
+            self.gains[index as usize] = gain;
+            self.gain_sums.forget(index as usize);
         }
-        self.triangles = triangles;
-        self.midpoints_of = midpoints_of;
-        self.rest.len() - before
+    }
+
+    /// By triangle, the volume gained by splitting it once at the images of its midpoints.
+    pub(crate) fn gains(&self) -> &[f64] {
+        &self.gains
+    }
+
+    /// Estimated signed volume between the flat triangles and the curved image.
+    pub(crate) fn facet_error(&mut self) -> f64 {
+        let gains = &self.gains;
+        let sums = self.gain_sums.know(gains.len(), |triangles| sum(gains[triangles].iter().copied()));
+        sum(sums.iter()) / SHARE_SEEN
+    }
+
+    /// The midpoints of a triangle's edges 01, 12 and 20.
+    fn midpoints_of(&self, triangle: usize) -> [u32; 3] {
+        std::array::from_fn(|side| self.midpoints.of_half_edge[3 * triangle + side])
+    }
+
+    /// The vertices from which and to which a half-edge runs.
+    fn ends(&self, half_edge: u32) -> [u32; 2] {
+        let triangle = self.triangles[half_edge as usize / 3];
+        [triangle[half_edge as usize % 3], triangle[(half_edge as usize + 1) % 3]]
     }
 }
 
 impl Midpoints {
-    fn find(&self, [a, b]: [u32; 2]) -> Option<u32> {
-        self.of_edge.get(&[a.min(b), a.max(b)]).copied()
-    }
-
-    fn find_or_insert(&mut self, [a, b]: [u32; 2], base: &[DVec3]) -> u32 {
-        *self.of_edge.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-            self.base.push(middle([a, b], base));
-            self.base.len() as u32 - 1
-        })
+    /// None is followed at these half-edges.
+    fn none(of_half_edge: Vec<u32>) -> Self {
+        Self {
+            of_half_edge,
+            base: Vec::new(),
+            image: Vec::new(),
+            bounds: Blocks::NONE,
+            pending: Vec::new(),
+            unused: Vec::new(),
+        }
     }
 }
 
-fn crossing_pairs(
-    positions: &[DVec3],
-    triangles: Vec<[u32; 3]>,
+/// Carries images through a stroke, of which `bounds` says where each block is.
+fn advance_images(
+    image: &mut [DVec3],
+    bounds: &mut Blocks<Aabb>,
+    stroke: &Stroke,
     monitor: &dyn Monitor,
-) -> Result<Vec<[u32; 2]>, Cancelled> {
-    match SelfIntersections::of(&TriMesh::new(positions.to_vec(), triangles), monitor) {
-        Ok(found) => Ok(found.pairs().to_vec()),
-        Err(SelfIntersectionError::Cancelled(cancelled)) => Err(cancelled),
-        // A mesh that cannot be searched is reported where it is checked; there is nothing to split here.
-        Err(_) => Ok(Vec::new()),
-    }
+) -> Result<Passage, Cancelled> {
+    let boxes: Vec<Aabb> = bounds.know(image.len(), |block| Aabb::of(image[block].iter().copied())).iter().collect();
+    let passage = flow::advance_once(image, &boxes, stroke, monitor)?;
+    passage.moved.iter().for_each(|&index| bounds.forget(index as usize));
+    Ok(passage)
 }
 
-/// The directed edges 01, 12 and 20 of a triangle.
-fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
+/// For each of `count` things whether it is among these.
+fn flags(count: usize, indices: &[u32]) -> Vec<bool> {
+    let mut is_among = vec![false; count];
+    indices.iter().for_each(|&index| is_among[index as usize] = true);
+    is_among
+}
+
+/// A compensated sum.
+fn sum(terms: impl Iterator<Item = f64>) -> f64 {
+    let mut sum = CompensatedSum::default();
+    terms.for_each(|term| sum.add(term));
+    sum.value()
 }
 
 /// The middle of an edge; it has the same bits from either end.
 fn middle([a, b]: [u32; 2], positions: &[DVec3]) -> DVec3 {
     0.5 * (positions[a as usize] + positions[b as usize])
-}
-
-fn chosen(is_split: &[bool], midpoint: u32) -> bool {
-    midpoint != UNTRACKED && is_split[midpoint as usize]
-}
-
-/// Appends the parts of `triangle`, whose edges 01, 12 and 20 have got the vertices `inserted`.
-fn split_triangle(triangle: &SubTriangle, inserted: [Option<u32>; 3], image: &[DVec3], parts: &mut Vec<SubTriangle>) {
-    // Turned so that the cases need one pattern each.
-    let turns = match inserted {
-        [Some(_), None, None] | [Some(_), Some(_), None] | [Some(_), Some(_), Some(_)] => 0,
-        [None, Some(_), _] => 1,
-        _ => 2,
-    };
-    let turned = |index: usize| (index + turns) % 3;
-    let corner = |index: usize| (triangle.vertices[turned(index)], triangle.corners[turned(index)]);
-    let inserted_at = |index: usize| {
-        let weights = 0.5 * (triangle.corners[turned(index)] + triangle.corners[turned(index + 1)]);
-        inserted[turned(index)].map(|vertex| (vertex, weights))
-    };
-    let mut push = |part: [(u32, DVec3); 3]| {
-        parts.push(SubTriangle { vertices: part.map(|p| p.0), corners: part.map(|p| p.1), parent: triangle.parent });
-    };
-    let [a, b, c] = [corner(0), corner(1), corner(2)];
-    match (inserted_at(0), inserted_at(1), inserted_at(2)) {
-        (Some(ab), Some(bc), Some(ca)) => {
-            push([a, ab, ca]);
-            push([ab, b, bc]);
-            push([ca, bc, c]);
-            push([ab, bc, ca]);
-        }
-        (Some(ab), Some(bc), None) => {
-            push([ab, b, bc]);
-            let position = |p: (u32, DVec3)| image[p.0 as usize];
-            if position(a).distance_squared(position(bc)) < position(ab).distance_squared(position(c)) {
-                push([a, ab, bc]);
-                push([a, bc, c]);
-            } else {
-                push([a, ab, c]);
-                push([ab, bc, c]);
-            }
-        }
-        (Some(ab), None, None) => {
-            push([a, ab, c]);
-            push([ab, b, c]);
-        }
-        _ => push([a, b, c]),
-    }
 }

@@ -29,24 +29,25 @@ pub(super) fn resolve(
 ) -> Result<(), Cancelled> {
     let rim_edge = if pressed.has_touched { leg.tool.support() / EDGES_ACROSS_RIM } else { f64::INFINITY };
     let mut evaluations = 0;
-    let split = split_long_edges(mesh, &[], criteria, monitor, |mesh| {
-        let (is_long, count) = long_edges(mesh, leg, rim_edge.max(leg.relief));
+    let all = (0..mesh.triangles.len() as u32).collect();
+    let split = split_long_edges(mesh, all, &[], criteria, monitor, |mesh, triangles| {
+        let (long_edges, count) = long_edges(mesh, triangles, leg, rim_edge.max(leg.relief));
         evaluations += count;
-        is_long
+        long_edges
     })?;
     pressed.refinement.add(&split);
     pressed.refinement.evaluations += evaluations;
     Ok(())
 }
 
-/// For each triangle which of its edges are too long, and the number of evaluations.
-fn long_edges(mesh: &Tessellation, leg: &Leg<'_>, rim_edge: f64) -> (Vec<[bool; 3]>, u64) {
+/// The half-edges at some triangles that are too long, and the number of evaluations.
+fn long_edges(mesh: &Tessellation, triangles: &[u32], leg: &Leg<'_>, rim_edge: f64) -> (Vec<u32>, u64) {
     let distance = leg.tool.distance();
     let bounds = leg.tool.support_bounds();
-    let mut is_long = vec![[false; 3]; mesh.triangles.len()];
+    let mut long_edges = Vec::new();
     let mut near = Vec::new();
-    for index in 0..mesh.triangles.len() {
-        let corners = mesh.image_of(index);
+    for &index in triangles {
+        let corners = mesh.image_of(index as usize);
         let longest = edge_lengths(&corners).into_iter().fold(0.0, f64::max);
         let center = (corners[0] + corners[1] + corners[2]) / 3.0;
         // No corner is farther from the center of mass than two thirds of the longest edge.
@@ -61,18 +62,20 @@ fn long_edges(mesh: &Tessellation, leg: &Leg<'_>, rim_edge: f64) -> (Vec<[bool; 
         // Where the distance is not known, that from the box is a lower bound.
         let beyond = || distance.bounds().distance(leg.end.to_local(*center));
         let clearance = if known.is_finite() { known / distance.lipschitz() } else { beyond() } - radius;
+        let mut is_long = [false; 3];
         if clearance <= 0.0 {
             // Zero where the tool stands still: then all of an edge counts.
             let way = (leg.end.to_world(leg.start.to_local(*center)) - *center).normalize_or_zero();
             let across = corners.map(|corner| corner - corner.dot(way) * way);
-            is_long[*index] = edge_lengths(&across).map(|length| length > leg.relief);
+            is_long = edge_lengths(&across).map(|length| length > leg.relief);
         }
         let most = if clearance <= 0.0 { WALL * leg.relief } else { rim_edge };
         if clearance <= leg.tool.support() {
-            for (is_long, length) in is_long[*index].iter_mut().zip(edge_lengths(corners)) {
+            for (is_long, length) in is_long.iter_mut().zip(edge_lengths(corners)) {
                 *is_long |= length > most;
             }
         }
+        long_edges.extend((3 * index..).zip(is_long).filter(|(_, is_long)| *is_long).map(|(half_edge, _)| half_edge));
     }
-    (is_long, centers.len() as u64)
+    (long_edges, centers.len() as u64)
 }
