@@ -2,9 +2,11 @@
 //! strokes, on one core. Prints the slopes on logarithmic scales and draws `target/growth/*.svg`.
 //!
 //! Ends each series before a run that would take longer than two seconds; `growth full` goes on to 10⁷ triangles and 20 seconds.
+//! `growth memory` prints what stages hold at their peak instead.
 
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
+mod memory;
 mod over_strokes;
 mod over_triangles;
 mod plot;
@@ -36,15 +38,25 @@ const RESOLUTIONS: [usize; 4] = [32, 64, 128, 256];
 const SEGMENTS: usize = 91;
 
 fn main() {
-    let extent = if std::env::args().any(|argument| argument == "full") { FULL } else { SHORT };
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["memory"] => return memory::measure(),
+        ["memory-of", stage, segments] => {
+            return on_one_core(|| memory::measure_stage(stage, segments.parse().expect("a number of segments")));
+        }
+        _ => {}
+    }
+    let extent = if arguments.iter().any(|argument| argument == "full") { FULL } else { SHORT };
     on_one_core(|| {
         let [mesh, deformation] = over_triangles::measure(extent);
         report("triangles", "triangles.svg", "Meshes: time of work over the number of triangles", &mesh);
         report("triangles", "deformation.svg", "Deformation: time of work over the number of triangles", &deformation);
         let grids = over_nodes(extent);
         report("nodes of the grid", "grid.svg", "Distance grids: time of work over the number of nodes", &grids);
-        let strokes = over_strokes::measure(extent);
+        let [strokes, touched] = over_strokes::measure(extent);
         report("strokes", "strokes.svg", "Strokes: time of work over their number", &strokes);
+        let title = "Strokes: time of work over the vertices that they move, summed up";
+        report("vertices moved, each by each stroke", "touched.svg", title, &touched);
     });
 }
 

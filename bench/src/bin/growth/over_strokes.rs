@@ -12,12 +12,12 @@ use crate::{
 /// Reach of each stroke: 64 of them cover the surface about twice over.
 const REACH: f64 = 0.35;
 
-/// Deformations of one mesh by growing numbers of strokes, spread over it evenly.
-pub(crate) fn measure(extent: Extent) -> Vec<Series> {
+/// Deformations of one mesh by growing numbers of strokes, spread over it evenly: over the number of strokes, and over the
+/// numbers of vertices that each of them moves, summed up.
+pub(crate) fn measure(extent: Extent) -> [Vec<Series>; 2] {
     let mesh = scan_of_cube(SEGMENTS);
-    let mut plain = Series::new("deform, no refinement");
-    let mut refined = Series::new("deform, refinement");
-    let mut flow = Series::new("flow of points");
+    let mut over_number = ["deform, no refinement", "deform, refinement", "flow of points"].map(Series::new);
+    let mut over_moved = over_number.clone();
     for count in [1, 2, 4, 8, 16, 32, 64] {
         let strokes: Vec<Stroke> = (0..count)
             .map(|index| {
@@ -29,12 +29,20 @@ pub(crate) fn measure(extent: Extent) -> Vec<Series> {
                 press(*nearest.expect("a vertex"), REACH)
             })
             .collect();
-        plain.measure(count, extent.seconds, || deform(&mesh, &strokes, &PLAIN, &Silent).expect("a sound mesh"));
-        refined
-            .measure(count, extent.seconds, || deform(&mesh, &strokes, &refinement(), &Silent).expect("a sound mesh"));
+        let [plain, refined, flow] = &mut over_number;
+        let deformed = |options| deform(&mesh, &strokes, options, &Silent).expect("a sound mesh");
+        let refinement = refinement();
+        plain.measure(count, extent.seconds, || deformed(&PLAIN));
+        refined.measure(count, extent.seconds, || deformed(&refinement));
         flow.measure(count, extent.seconds, || flow_points(&mesh.positions, &strokes, &Silent).expect("no stamp"));
+        for (options, moving) in [(&PLAIN, vec![0, 2]), (&refinement, vec![1])] {
+            let moved = deformed(options).receipt.strokes.iter().map(|stroke| stroke.moved).sum();
+            for index in moving {
+                over_moved[index].repeat_last(moved, &over_number[index], count);
+            }
+        }
     }
-    vec![plain, refined, flow]
+    [over_number.into(), over_moved.into()]
 }
 
 /// Directions about equally far from each other: steps of the golden angle on equal slices of the sphere.

@@ -13,7 +13,7 @@ use crate::{Extent, series::Series};
 const SEGMENTS: [usize; 7] = [29, 51, 91, 162, 289, 513, 913];
 
 /// Vertices that a local stroke reaches, whatever the mesh.
-const LOCAL_VERTICES: f64 = 1000.0;
+pub(crate) const LOCAL_VERTICES: f64 = 1000.0;
 
 /// Reach of a stroke that grows with nothing: it touches about a tenth of the vertices.
 const WIDE: f64 = 0.6;
@@ -77,8 +77,7 @@ fn measure_mesh(series: &mut [Series; 9], mesh: &TriMesh, extent: Extent) {
 fn measure_deformations(series: &mut [Series; 5], mesh: &TriMesh, extent: Extent) {
     let triangles = mesh.triangles.len();
     let [local, local_refined, wide, wide_refined, flow] = series;
-    // A ball of radius r around a point of the unit sphere holds r²/4 of its area.
-    let reach = (8.0 * LOCAL_VERTICES / triangles as f64).sqrt();
+    let reach = reach_of(LOCAL_VERTICES, mesh);
     let middle = mesh.positions[mesh.positions.len() / 2];
     for (reach, plain, refined) in [(reach, local, local_refined), (WIDE, wide, wide_refined)] {
         let strokes = [press(middle, reach)];
@@ -90,6 +89,12 @@ fn measure_deformations(series: &mut [Series; 5], mesh: &TriMesh, extent: Extent
     }
     let strokes = [press(middle, WIDE)];
     flow.measure(triangles, extent.seconds, || flow_points(&mesh.positions, &strokes, &Silent).expect("no stamp"));
+}
+
+/// Reach of a stroke that touches about this number of vertices.
+pub(crate) fn reach_of(vertices: f64, mesh: &TriMesh) -> f64 {
+    // A ball of radius r around a point of the unit sphere holds r²/4 of its area, and there are two triangles a vertex.
+    (8.0 * vertices / mesh.triangles.len() as f64).sqrt()
 }
 
 /// The mesh keeps its triangles.

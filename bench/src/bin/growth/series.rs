@@ -10,7 +10,7 @@ const LONG: f64 = 1.0;
 const LAST: usize = 3;
 
 /// What one stage takes at growing sizes.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Series {
     pub(crate) stage: &'static str,
     /// Sizes, and seconds of work.
@@ -38,6 +38,12 @@ impl Series {
             drop(result);
         }
         self.points.push((size, median(&mut seconds)));
+    }
+
+    /// Takes over what `other` measured last, at `other_size`, for another measure of the size.
+    pub(crate) fn repeat_last(&mut self, size: usize, other: &Self, other_size: usize) {
+        let measured = other.points.last().filter(|(size, _)| *size == other_size);
+        self.points.extend(measured.map(|&(_, seconds)| (size, seconds)));
     }
 
     /// The exponent of the power of the size that fits the seconds best, by least squares of the logarithms.
