@@ -56,7 +56,7 @@ fn main() {
         let [strokes, touched] = over_strokes::measure(extent);
         report("strokes", "strokes.svg", "Strokes: time of work over their number", &strokes);
         let title = "Strokes: time of work over the vertices that they move, summed up";
-        report("vertices moved, each by each stroke", "touched.svg", title, &touched);
+        report("vertices moved", "touched.svg", title, &touched);
     });
 }
 
