@@ -2,7 +2,7 @@
 //! brush that touches equally many vertices of each, while edges are split, collapsed and flipped. Every stage of the moves, what
 //! undo takes, and what it holds.
 
-use std::{sync::Arc, time::Instant};
+use std::{f64::consts::FRAC_PI_4, sync::Arc, time::Instant};
 
 use glam::DVec3;
 use isochore_bench::{cpu_seconds, median, print_row};
@@ -22,7 +22,7 @@ const JUDGED: usize = 1;
 
 /// Share of the surface of a million triangles within reach of the brush, so that a move in the middle of its way in and out touches
 /// two vertices in a hundred.
-const REACHED: f64 = 0.028;
+const REACHED: f64 = 0.023;
 
 const MOVES: usize = 300;
 
@@ -68,6 +68,22 @@ fn main() {
     }
 }
 
+/// The reach of a brush that covers this share of the unit sphere, above which its middle stands by `HEIGHT` of its reach.
+fn reach_of(share: f64) -> f64 {
+    let covered = |reach: f64| {
+        let middle = 1.0 + HEIGHT * reach;
+        // The law of cosines for the middles of sphere and brush and a point where both surfaces meet.
+        let cosine = (1.0 + middle * middle - reach * reach) / (2.0 * middle);
+        0.5 * (1.0 - cosine)
+    };
+    let (mut low, mut high) = (0.0, 1.0);
+    while high - low > 1e-9 {
+        let between = 0.5 * (low + high);
+        *(if covered(between) < share { &mut low } else { &mut high }) = between;
+    }
+    high
+}
+
 /// One stroke on one mesh.
 struct Run {
     triangles: usize,
@@ -84,10 +100,8 @@ impl Run {
     fn of(segments: usize) -> Self {
         let mesh = sphere(segments);
         let (triangles, opened_volume) = (mesh.triangles.len(), mesh.volume());
-        // A ball that cuts a circle of radius c out of a plane takes about c²/4 of the unit sphere; here it stands above the
-        // surface by HEIGHT of its radius.
         let million = (12 * SEGMENTS[JUDGED] * SEGMENTS[JUDGED]) as f64;
-        let reach = 2.0 * (REACHED * million / triangles as f64 / (1.0 - HEIGHT * HEIGHT)).sqrt();
+        let reach = reach_of(REACHED * million / triangles as f64);
         let longest = 1.5 * longest_edge(&mesh);
         let mut session = Session::open(mesh, SessionOptions::default()).expect("a sphere");
         let shape = ToolShape::Sphere(Sphere { radius: 0.5 * reach });
@@ -170,10 +184,12 @@ impl Run {
     }
 }
 
-/// A cube of cells, blown up.
+/// A cube blown up, its cells at equal angles seen from the middle of a face, so that they are of much the same size.
 fn sphere(segments: usize) -> TriMesh {
     let mut mesh = primitives::box_mesh(DVec3::ONE, [segments; 3]);
-    mesh.positions.iter_mut().for_each(|position| *position = position.normalize());
+    for position in &mut mesh.positions {
+        *position = position.map(|coordinate| libm::tan(FRAC_PI_4 * coordinate)).normalize();
+    }
     mesh
 }
 

@@ -89,10 +89,12 @@ impl<T: Copy> Journaled<T> {
         self.old.iter().map(|&(index, _)| index)
     }
 
-    /// Ends recording and returns the way back.
+    /// Ends recording and returns the way back, in order of the indices, so that it goes through memory once.
     pub fn finish(&mut self) -> Delta<T> {
         let length = self.start.take().unwrap_or(self.items.len());
-        Delta { items: std::mem::take(&mut self.old), tail: Vec::new(), length }
+        let mut items = std::mem::take(&mut self.old);
+        items.sort_unstable_by_key(|&(index, _)| index);
+        Delta { items, tail: Vec::new(), length }
     }
 
     /// Takes the array to the other end of `delta`, which then leads back. Deltas must be swapped in reverse order of their

@@ -14,7 +14,8 @@
 //! ```
 //! use std::sync::Arc;
 //!
-//! //! use isochore_field::Pose;
+//! use glam::DVec3;
+//! use isochore_field::Pose;
 //! use isochore_mesh::{Silent, primitives::icosphere};
 //! use isochore_sculpt::{Meshes, recipe, session::{Session, SessionOptions, SessionTool, StrokeOptions}};
 //!
