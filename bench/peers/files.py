@@ -29,7 +29,8 @@ class Open3d:
         return len(self.mesh.triangles)
 
     def write(self, path):
-        self.library.io.write_triangle_mesh(path, self.mesh, write_vertex_normals=False)
+        if not self.library.io.write_triangle_mesh(path, self.mesh, write_vertex_normals=False):
+            raise OSError(f"Open3D refuses to write {path}")
 
 
 class Pymeshlab:

@@ -190,7 +190,7 @@ impl DistanceField {
             },
             || {
                 let open_edges = open_edges(&mesh.triangles, mesh.positions.len());
-                let volume_and_centroid = open_edges.is_empty().then(|| mesh.volume_and_centroid());
+                let volume_and_centroid = open_edges.is_empty().then(|| mesh.volume_and_centroid(surface));
                 (open_edges, volume_and_centroid)
             },
         );

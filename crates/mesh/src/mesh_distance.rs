@@ -49,7 +49,8 @@ impl MeshDistance {
         let is_simple =
             is_simple(mesh) && SelfIntersections::among(&mesh.positions, &mesh.triangles, monitor)?.is_empty();
         let is_closed = open_edges(&mesh.triangles, mesh.positions.len()).is_empty();
-        let centroid = surface_centroid(mesh, bvh.bounds(), is_closed.then(|| mesh.volume_and_centroid()));
+        let volume_and_centroid = is_closed.then(|| mesh.volume_and_centroid(bvh.bounds()));
+        let centroid = surface_centroid(mesh, bvh.bounds(), volume_and_centroid);
         monitor.check("signs", 0.0)?;
         let sides = if is_simple {
             Sides::PseudoNormals(Box::new(PseudoNormals::new(&bvh, mesh.positions.len())))

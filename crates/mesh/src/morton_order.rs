@@ -33,7 +33,9 @@ impl RadixKey for Placed {
 pub(crate) fn along_morton_curve(points: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<Placed> {
     let mut placed: Vec<Placed> =
         (0..triangles.len() as u32).into_par_iter().map(|triangle| Placed { cell: 0, triangle }).collect();
-    sort(&mut placed, &|triangle: u32| {
+    // Sums of three corners, which lie within three times the bounds of all points: those take less time than their own.
+    let (min, max) = bounds(points.par_iter().copied());
+    sort(&mut placed, [min, max].map(|corner| corner.map(|coordinate| 3.0 * coordinate)), &|triangle: u32| {
         let [a, b, c] = triangles[triangle as usize];
         let (a, b, c) = (points[a as usize], points[b as usize], points[c as usize]);
         [a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]]
@@ -41,14 +43,17 @@ pub(crate) fn along_morton_curve(points: &[[f32; 3]], triangles: &[[u32; 3]]) ->
     placed
 }
 
-fn sort(placed: &mut [Placed], center: &(impl Fn(u32) -> [f32; 3] + Sync)) {
+fn bounds(points: impl ParallelIterator<Item = [f32; 3]>) -> ([f32; 3], [f32; 3]) {
     let union = |(min, max): ([f32; 3], [f32; 3]), (a, b): ([f32; 3], [f32; 3])| {
         let min = [lesser(min[0], a[0]), lesser(min[1], a[1]), lesser(min[2], a[2])];
         (min, [greater(max[0], b[0]), greater(max[1], b[1]), greater(max[2], b[2])])
     };
     let empty = || ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    let (min, max) =
-        (placed.par_iter()).map(|placed| center(placed.triangle)).map(|point| (point, point)).reduce(empty, union);
+    points.map(|point| (point, point)).reduce(empty, union)
+}
+
+/// Sorts by cells of a grid between two corners.
+fn sort(placed: &mut [Placed], [min, max]: [[f32; 3]; 2], center: &(impl Fn(u32) -> [f32; 3] + Sync)) {
     let longest = [0, 1, 2].map(|axis| max[axis] - min[axis]).into_iter().fold(0.0, f32::max);
     let cells = ((1 << BITS_PER_AXIS) - 1) as f32;
     if !(longest > 0.0 && (cells / longest).is_finite()) {
@@ -63,7 +68,8 @@ fn sort(placed: &mut [Placed], center: &(impl Fn(u32) -> [f32; 3] + Sync)) {
     });
     placed.radix_sort_unstable();
     for cell in placed.chunk_by_mut(|a, b| a.cell == b.cell).filter(|cell| cell.len() > LARGEST_CELL) {
-        sort(cell, center);
+        let (min, max) = bounds(cell.par_iter().map(|placed| center(placed.triangle)));
+        sort(cell, [min, max], center);
     }
 }
 

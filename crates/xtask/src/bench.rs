@@ -58,8 +58,11 @@ fn rows_of(folder: &Path) -> TaskResult<Vec<Value>> {
     Ok(rows)
 }
 
-/// The table in Markdown; a job that several peers do is named once.
+/// The table in Markdown; a job that several peers do is named once, with all of them below it.
 fn table(rows: &[Value]) -> TaskResult<String> {
+    let first_of_job = |row: &&Value| rows.iter().position(|other| other["job"] == row["job"]);
+    let mut rows: Vec<&Value> = rows.iter().collect();
+    rows.sort_by_key(first_of_job);
     let mut table = String::from(
         "| job | peer | unit | isochore | peer's | ratio | accuracy |\n|---|---|---|---:|---:|---:|---|\n",
     );
@@ -78,7 +81,7 @@ fn table(rows: &[Value]) -> TaskResult<String> {
             three_digits(ours),
             three_digits(theirs),
             three_digits(theirs / ours),
-            word("accuracy")?,
+            word("accuracy")?.replace('|', "\\|"),
         )?;
         last = job;
     }
@@ -135,15 +138,15 @@ mod tests {
 
     #[test]
     fn a_job_is_named_once() {
-        let row = |job: &str, peer: &str| serde_json::json!({ "job": job, "peer": peer, "unit": "ms", "ours": 2.0, "theirs": 3.0, "accuracy": "exact" });
-        let table = table(&[row("a", "p"), row("a", "q"), row("b", "p")]).unwrap();
+        let row = |job: &str, peer: &str| serde_json::json!({ "job": job, "peer": peer, "unit": "ms", "ours": 2.0, "theirs": 3.0, "accuracy": "1 | 2" });
+        let table = table(&[row("a", "p"), row("b", "p"), row("a", "q")]).unwrap();
         let lines: Vec<&str> = table.lines().skip(2).collect();
         assert_eq!(
             lines,
             [
-                "| a | p | ms | 2.00 | 3.00 | 1.50 | exact |",
-                "|  | q | ms | 2.00 | 3.00 | 1.50 | exact |",
-                "| b | p | ms | 2.00 | 3.00 | 1.50 | exact |"
+                "| a | p | ms | 2.00 | 3.00 | 1.50 | 1 \\| 2 |",
+                "|  | q | ms | 2.00 | 3.00 | 1.50 | 1 \\| 2 |",
+                "| b | p | ms | 2.00 | 3.00 | 1.50 | 1 \\| 2 |"
             ]
         );
         assert!(super::table(&[serde_json::json!({})]).is_err());

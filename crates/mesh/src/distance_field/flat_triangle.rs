@@ -3,7 +3,7 @@ use super::vector::{Lanes3, at, cross, direction, dot, minus, perpendicular, sel
 use crate::extremes::{greater, lesser};
 
 /// A triangle in its own plane: corners at (0, 0), (`base`, 0) and `left_length` · `left`.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, bytemuck::Zeroable)]
 pub(super) struct FlatTriangle {
     origin: [f32; 3],
     along: [f32; 3],
@@ -19,18 +19,6 @@ pub(super) struct FlatTriangle {
 }
 
 impl FlatTriangle {
-    pub(super) const NONE: Self = Self {
-        origin: [0.0; 3],
-        along: [0.0; 3],
-        across: [0.0; 3],
-        normal: [0.0; 3],
-        base: 0.0,
-        right: [0.0; 2],
-        right_length: 0.0,
-        left: [0.0; 2],
-        left_length: 0.0,
-    };
-
     /// Puts the longest edge of each triangle along the first axis, which keeps slivers well-conditioned. A triangle without area
     /// lies in any plane through its longest edge.
     #[inline(always)]

@@ -13,7 +13,7 @@ use crate::bvh::{LEAF_TRIANGLES, Node};
 use crate::extremes::greater;
 
 /// A box in any orientation, ready for distances to a packet of points.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, bytemuck::Zeroable)]
 #[repr(align(64))]
 pub(super) struct OrientedBox {
     axes: [[f32; 3]; 3],
@@ -27,8 +27,6 @@ pub(super) struct OrientedBox {
 const _: () = assert!(LEAF_TRIANGLES < 8 && size_of::<OrientedBox>() == 64, "three bits, and a line of the cache");
 
 impl OrientedBox {
-    pub(super) const NONE: Self = Self { axes: [[0.0; 3]; 3], middle: [0.0; 3], half: [0.0; 3], held: 0 };
-
     /// The first of both children, if it has any.
     #[inline(always)]
     pub(super) fn children(&self) -> Option<usize> {

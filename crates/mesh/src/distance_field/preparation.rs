@@ -44,8 +44,9 @@ impl Preparation {
     pub(super) fn new(bvh: &Bvh, largest: f64) -> Self {
         let nodes = bvh.nodes();
         let rounding = COORDINATE_ROUNDING * (largest + 1.0);
-        let mut triangles = vec![FlatTriangle::NONE; bvh.triangles().len()];
-        let mut boxes = vec![OrientedBox::NONE; nodes.len()];
+        // Zeros from the system, which need not be written first.
+        let mut triangles: Vec<FlatTriangle> = bytemuck::zeroed_vec(bvh.triangles().len());
+        let mut boxes: Vec<OrientedBox> = bytemuck::zeroed_vec(nodes.len());
 
         let mut roots = Vec::new();
         fold(nodes, 0, TASK, |root, _: Option<[(); 2]>| {
