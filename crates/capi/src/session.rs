@@ -433,7 +433,8 @@ pub unsafe extern "C" fn isochore_session_log(session: *const Session, recipe: *
     })
 }
 
-/// The surface as a mesh of its own. `lock` gives back the volume of the mesh as opened by the least displacement of what has moved.
+/// The surface as a mesh of its own. With `lock`, with what the lock has added at the end of each stroke; else where the flow
+/// alone has taken it.
 ///
 /// # Safety
 /// `session` is a handle; `mesh` can be written to.

@@ -267,7 +267,7 @@ class Session:
     def export(self, *, lock: bool = False) -> tuple[Mesh, NDArray[np.uint32]]:
         """The surface as a mesh, and the number (V,) in the session of each of its vertices.
 
-        lock: gives back the volume of the mesh as opened by the least displacement of what has moved.
+        lock: with what the lock has added at the end of each stroke; else where the flow alone has taken it.
         """
 
     @property

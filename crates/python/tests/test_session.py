@@ -46,6 +46,11 @@ def test_volume_is_accounted_for(ball, brush):
     assert exported.is_closed
     assert exported.volume - ball.volume == pytest.approx(change, abs=volume["rounding"] + 1e-14)
     assert session.volume == pytest.approx(exported.volume, abs=1e-13)
+
+
+def test_lock_gives_the_volume_back(ball, brush):
+    session = isochore.Session(ball)
+    assert stroke(session, brush)["lock_max_shift"] > 0
     locked, _ = session.export(lock=True)
     assert locked.volume == pytest.approx(ball.volume, rel=1e-13)
 
