@@ -79,6 +79,23 @@ pub(crate) unsafe fn put<T>(name: &str, place: *mut T, value: T) -> Result<(), F
     Ok(())
 }
 
+/// Writes where values lie and how many there are.
+///
+/// # Safety
+/// `place` and `count` are NULL or can be written to.
+pub(crate) unsafe fn put_slice<T>(
+    name: &str,
+    place: *mut *const T,
+    count: *mut usize,
+    values: &[T],
+) -> Result<(), Failure> {
+    // SAFETY: as the caller promises.
+    unsafe {
+        put(name, place, values.as_ptr())?;
+        put("count", count, values.len())
+    }
+}
+
 /// Copies values where the caller wants them.
 ///
 /// # Safety

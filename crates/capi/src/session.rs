@@ -17,7 +17,7 @@ pub use query::{
 
 use crate::{
     error::{Failure, Status, guarded},
-    memory::{array, free, hand_over, hand_over_text, put, reference, reference_mut, text},
+    memory::{array, free, hand_over, hand_over_text, put, put_slice, reference, reference_mut, text},
     mesh::Mesh,
     tool::Tool,
 };
@@ -390,10 +390,7 @@ pub unsafe extern "C" fn isochore_session_changed(
         let found = session.changed.get(buffer as usize);
         let found = found.ok_or_else(|| Failure::argument(format!("{buffer} is no buffer")))?;
         // SAFETY: as the caller promises.
-        unsafe {
-            put("ranges", ranges, found.as_ptr())?;
-            put("count", count, found.len())
-        }
+        unsafe { put_slice("ranges", ranges, count, found) }
     })
 }
 

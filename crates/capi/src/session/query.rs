@@ -8,7 +8,7 @@ use isochore_sculpt::session::Hit as SurfaceHit;
 use super::{Session, key};
 use crate::{
     error::{Failure, Status, guarded},
-    memory::{array, put, reference, reference_mut},
+    memory::{array, put, put_slice, reference, reference_mut},
     tool::Tool,
 };
 
@@ -129,10 +129,7 @@ pub unsafe extern "C" fn isochore_session_vertices_in_reach(
             unsafe { (reference_mut("session", session)?, reference("tool", tool)?, pose(at, rotate)?) };
         session.session.vertices_in_reach(&tool.tool, &pose, &mut session.reached);
         // SAFETY: as the caller promises.
-        unsafe {
-            put("vertices", vertices, session.reached.as_ptr())?;
-            put("count", count, session.reached.len())
-        }
+        unsafe { put_slice("vertices", vertices, count, &session.reached) }
     })
 }
 
@@ -167,10 +164,7 @@ pub unsafe extern "C" fn isochore_session_preview(
         };
         session.arrows = found.iter().map(arrow).collect();
         // SAFETY: as the caller promises.
-        unsafe {
-            put("arrows", arrows, session.arrows.as_ptr())?;
-            put("count", count, session.arrows.len())
-        }
+        unsafe { put_slice("arrows", arrows, count, &session.arrows) }
     })
 }
 
