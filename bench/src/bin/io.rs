@@ -40,7 +40,8 @@ fn main() {
         let milliseconds = 1e3 * (cpu_seconds() - begin);
         println!("welding {} vertices takes {milliseconds:.1} ms, the copy included", welded.positions.len());
         let normals = mesh.vertex_normals();
-        mesh.corner.normals = mesh.triangles.iter().map(|t| t.map(|vertex| normals[vertex as usize])).collect();
+        mesh.corner.normals =
+            mesh.triangles.iter().map(|t| t.map(|vertex| normals[vertex as usize].as_vec3())).collect();
         compare_formats(&mesh, ", with normals");
     });
 }

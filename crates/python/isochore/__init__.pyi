@@ -59,7 +59,7 @@ class Mesh:
 
         positions: (V, 3) numbers, model units. triangles: (T, 3) integers, counter-clockwise seen from outside.
         uvs: sets of texture coordinates, (T, 3, 2) each, by corner, so that seams do not open the surface. normals: for
-        shading, by corner, (T, 3, 3), of any length; they turn with the surface. colors: (V, 4), linear RGBA, 0 to 1.
+        shading, by corner, (T, 3, 3), of any length; they turn with the surface and are kept in single precision. colors: (V, 4), linear RGBA, 0 to 1.
         skin: joints (V, K), integers, and their weights (V, K), which are divided by the sum of each row; weight 0 is for places not used.
         """
 
@@ -97,8 +97,8 @@ class Mesh:
         """Sets of texture coordinates by corner, (T, 3, 2) each; views."""
 
     @property
-    def normals(self) -> NDArray[np.float64] | None:
-        """Shading normals by corner, (T, 3, 3), unit length; a view."""
+    def normals(self) -> NDArray[np.float32] | None:
+        """Shading normals by corner, (T, 3, 3), unit length, in single precision; a view."""
 
     @property
     def colors(self) -> NDArray[np.float64] | None:

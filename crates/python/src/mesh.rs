@@ -51,7 +51,7 @@ impl Mesh {
             check_shape("normals", normals.shape(), &[Some(mesh.triangles.len()), Some(3), Some(3)])?;
             let given: &[[DVec3; 3]] = cast_slice(numbers("normals", &normals)?);
             let unit = |(triangle, corners): (usize, &[DVec3; 3])| match corners.map(DVec3::try_normalize) {
-                [Some(a), Some(b), Some(c)] => Ok([a, b, c]),
+                [Some(a), Some(b), Some(c)] => Ok([a, b, c].map(|normal| normal.as_vec3())),
                 _ => Err(Failure::Argument(format!("normals: one of triangle {triangle} has no direction"))),
             };
             mesh.corner.normals = given.iter().enumerate().map(unit).collect::<Result<_, _>>()?;
@@ -143,7 +143,7 @@ impl Mesh {
     fn normals<'py>(slf: &Bound<'py, Self>) -> Option<Bound<'py, PyAny>> {
         let normals = &slf.get().mesh.corner.normals;
         let owner = slf.clone().into_any();
-        (!normals.is_empty()).then(|| view::<f64>(owner, cast_slice(normals.as_flattened()), &[normals.len(), 3, 3]))
+        (!normals.is_empty()).then(|| view::<f32>(owner, cast_slice(normals.as_flattened()), &[normals.len(), 3, 3]))
     }
 
     #[getter]

@@ -139,6 +139,13 @@ pub(super) fn push_index(bytes: &mut Vec<u8>, mut index: u32) {
     bytes.extend_from_slice(&digits[start..]);
 }
 
+/// A number of single or double precision.
+pub(super) trait Number: ryu::Float + Into<f64> + Default {}
+
+impl Number for f32 {}
+
+impl Number for f64 {}
+
 /// Lines of words on their way to a writer.
 pub(super) struct LineWriter<'a> {
     writer: &'a mut dyn Write,
@@ -154,15 +161,15 @@ impl<'a> LineWriter<'a> {
         self.buffer.extend_from_slice(text.as_bytes());
     }
 
-    /// The shortest decimal that reads back as the same double; zero for what is not finite and could not be read.
-    pub(super) fn push_number(&mut self, number: f64) {
+    /// The shortest decimal that reads back as the same number; zero for what is not finite and could not be read.
+    pub(super) fn push_number<T: Number>(&mut self, number: T) {
         let mut digits = ryu::Buffer::new();
-        let digits = digits.format_finite(if number.is_finite() { number } else { 0.0 });
+        let digits = digits.format_finite(if number.into().is_finite() { number } else { T::default() });
         self.push_text(digits.strip_suffix(".0").unwrap_or(digits));
     }
 
     /// Each number after a space.
-    pub(super) fn push_numbers(&mut self, numbers: impl IntoIterator<Item = f64>) {
+    pub(super) fn push_numbers(&mut self, numbers: impl IntoIterator<Item = impl Number>) {
         for number in numbers {
             self.buffer.push(b' ');
             self.push_number(number);

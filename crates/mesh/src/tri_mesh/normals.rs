@@ -36,7 +36,7 @@ impl TriMesh {
         let has_moved = |vertex: u32| self.positions[vertex as usize] != rest[vertex as usize];
         let key = |corner: u32| {
             let (triangle, side) = (corner as usize / 3, corner as usize % 3);
-            (self.triangles[triangle][side], normals[triangle][side].to_array().map(f64::to_bits))
+            (self.triangles[triangle][side], normals[triangle][side].to_array().map(f32::to_bits))
         };
         // Only vertices next to a moved one need new normals.
         let mut is_near = vec![false; self.positions.len()];
@@ -62,7 +62,7 @@ impl TriMesh {
             if let (Some(from), Some(to)) = (mean(rest), mean(&self.positions)) {
                 for &corner in group {
                     let normal = &mut turned[corner as usize / 3][corner as usize % 3];
-                    *normal = turn(*normal, from, to);
+                    *normal = turn(normal.as_dvec3(), from, to).as_vec3();
                 }
             }
         }

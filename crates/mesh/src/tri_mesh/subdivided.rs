@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::{CornerAttributes, TriMesh, VertexAttributes};
 
@@ -120,7 +120,7 @@ where
     children.iter().map(at).collect()
 }
 
-fn interpolate_normals(normals: &[[DVec3; 3]], children: &[SubTriangle]) -> Vec<[DVec3; 3]> {
+fn interpolate_normals(normals: &[[Vec3; 3]], children: &[SubTriangle]) -> Vec<[Vec3; 3]> {
     if normals.is_empty() {
         return Vec::new();
     }
@@ -132,11 +132,12 @@ fn interpolate_normals(normals: &[[DVec3; 3]], children: &[SubTriangle]) -> Vec<
 }
 
 /// The unit normal between three; where they cancel, that of the heaviest corner, which is as good as any.
-pub(super) fn interpolate_normal(corners: &[DVec3; 3], weights: DVec3) -> DVec3 {
+pub(super) fn interpolate_normal(corners: &[Vec3; 3], weights: DVec3) -> Vec3 {
     if let Some(kept) = weights.to_array().iter().position(|&weight| weight == 1.0) {
         return corners[kept];
     }
-    interpolate(corners, weights).try_normalize().unwrap_or(corners[weights.max_position()])
+    let between = interpolate(&corners.map(|normal| normal.as_dvec3()), weights).try_normalize();
+    between.map_or(corners[weights.max_position()], |normal| normal.as_vec3())
 }
 
 pub(super) fn interpolate_influences(corners: [&[(u32, f64)]; 3], weights: DVec3, most: usize) -> Vec<(u32, f64)> {

@@ -14,7 +14,7 @@ impl TriMesh {
             *position = rotation * (*position * scale) + translation;
         }
         for normal in mesh.corner.normals.iter_mut().flatten() {
-            *normal = rotation * *normal;
+            *normal = (rotation * normal.as_dvec3()).as_vec3();
         }
         // A point reflection negates normals as well as winding, which is what turning over does to both.
         if scale < 0.0 { mesh.flipped() } else { mesh }

@@ -45,7 +45,7 @@ fn seamed_box() -> TriMesh {
     };
     let uvs = (0..mesh.triangles.len()).map(|t| mesh.corners(t).map(|position| uv(position, normals[t])));
     mesh.corner.uvs = vec![uvs.collect()];
-    mesh.corner.normals = normals.iter().map(|&normal| [normal; 3]).collect();
+    mesh.corner.normals = normals.iter().map(|normal| [normal.as_vec3(); 3]).collect();
     mesh.vertex.colors = mesh.positions.iter().map(|p| DVec4::new(p.x.abs() / 4.0, 0.25, 0.5, 1.0)).collect();
     mesh.materials = vec!["bark".into(), "moss green".into()];
     mesh.triangle_materials = normals.iter().map(|normal| u32::from(normal.z > 0.5)).collect();

@@ -166,10 +166,10 @@ fn order_and_partial_attributes_survive() {
     assert_eq!(mesh.materials, ["", "two  words"]);
     let uvs: Vec<f64> = mesh.corner.uvs[0].iter().map(|corners| corners[1].x).collect();
     assert_eq!(uvs, [0.5, 0.0, 0.0]);
-    let normals: Vec<f64> = mesh.corner.normals.iter().map(|corners| corners[0].x).collect();
+    let normals: Vec<f32> = mesh.corner.normals.iter().map(|corners| corners[0].x).collect();
     assert_eq!((normals[0], normals[2]), (1.0, 1.0));
-    // The second face has the normal of its plane, which is rounded once or twice.
-    assert!((normals[1] + (1.0_f64 / 3.0).sqrt()).abs() < 2.0 * f64::EPSILON);
+    // The second face has the normal of its plane, which is rounded once more.
+    assert!((normals[1] + (1.0_f32 / 3.0).sqrt()).abs() < 2.0 * f32::EPSILON);
     let colors: Vec<[f64; 4]> = mesh.vertex.colors.iter().map(|color| color.to_array()).collect();
     assert_eq!(colors[..3], [[1.0; 4], [0.5, 0.0, 0.0, 0.25], [1.0; 4]]);
     assert_eq!(colors.len(), 6);

@@ -28,7 +28,7 @@ fn obj_agrees_with_tobj() {
                 positions.push([0, 1, 2].map(|corner| triple(corners[corner], &theirs.positions)));
             }
             for corners in theirs.normal_indices.chunks_exact(3) {
-                normals.push([0, 1, 2].map(|corner| triple(corners[corner], &theirs.normals)));
+                normals.push([0, 1, 2].map(|corner| triple(corners[corner], &theirs.normals).as_vec3()));
             }
             for corners in theirs.texcoord_indices.chunks_exact(3) {
                 uvs.push([0, 1, 2].map(|c| glam::DVec2::from_slice(&theirs.texcoords[2 * corners[c] as usize..])));

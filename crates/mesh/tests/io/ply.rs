@@ -1,4 +1,4 @@
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4, Vec3};
 use isochore_mesh::io::{self, Format};
 
 use crate::{parse, seamed_box, written};
@@ -16,7 +16,7 @@ fn text_is_read() {
     assert_eq!(mesh.positions[1], DVec3::new(1.0, 0.1, 0.0));
     assert_eq!(mesh.vertex.colors[0], DVec4::new(1.0, 0.0, 0.2, 1.0));
     assert_eq!(mesh.corner.uvs[0][2][2], DVec2::new(0.5, 0.0));
-    assert_eq!(mesh.corner.normals[0], [DVec3::Z; 3]);
+    assert_eq!(mesh.corner.normals[0], [Vec3::Z; 3]);
 }
 
 #[test]

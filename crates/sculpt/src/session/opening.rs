@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use isochore_mesh::{EditMesh, NONE, Origin, SurfaceTree, TriMesh, next_half_edge};
 
 use super::{
@@ -47,9 +47,9 @@ fn check_attributes(mesh: &TriMesh) -> Result<(), OpenError> {
 pub(super) fn is_same_corner(mesh: &TriMesh, [one, other]: [(u32, usize); 2]) -> bool {
     let [(a, i), (b, j)] = [one, other].map(|(triangle, side)| (triangle as usize, side));
     let corner = &mesh.corner;
-    let bits3 = |normal: DVec3| normal.to_array().map(f64::to_bits);
+    let bits = |normal: Vec3| normal.to_array().map(f32::to_bits);
     corner.uvs.iter().all(|set| set[a][i].to_array().map(f64::to_bits) == set[b][j].to_array().map(f64::to_bits))
-        && (corner.normals.is_empty() || bits3(corner.normals[a][i]) == bits3(corner.normals[b][j]))
+        && (corner.normals.is_empty() || bits(corner.normals[a][i]) == bits(corner.normals[b][j]))
         && (corner.colors.is_empty()
             || corner.colors[a][i].to_array().map(f64::to_bits) == corner.colors[b][j].to_array().map(f64::to_bits))
 }
@@ -98,7 +98,7 @@ fn hard_edges(mesh: &TriMesh, topology: &EditMesh, triangle: u32) -> u8 {
     if normals.is_empty() {
         return 0;
     }
-    let normal = |half_edge: u32| normals[half_edge as usize / 3][half_edge as usize % 3].to_array().map(f64::to_bits);
+    let normal = |half_edge: u32| normals[half_edge as usize / 3][half_edge as usize % 3].to_array().map(f32::to_bits);
     let is_hard = |side: &u32| {
         let half_edge = 3 * triangle + side;
         let twin = topology.twin(half_edge);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
-use glam::{DMat3, DVec2, DVec3, DVec4};
+use glam::{DMat3, DVec2, DVec3, DVec4, Vec3};
 use serde_json::Value;
 
 use super::document::{Document, malformed};
@@ -43,7 +43,7 @@ fn common_skin(instances: &[Instance]) -> Option<usize> {
 struct Soup {
     positions: Vec<DVec3>,
     /// Zero where the file gives none.
-    normals: Column<DVec3>,
+    normals: Column<Vec3>,
     uvs: Vec<Column<DVec2>>,
     colors: Column<DVec4>,
     influences: Column<Vec<(u32, f64)>>,
@@ -176,12 +176,12 @@ impl Soup {
             let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
             let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * linear.determinant().signum();
             let turn = |normal| match DVec3::from_array(normal) {
-                normal if is_in_place => normal,
-                normal => (cofactors * normal).normalize_or_zero(),
+                normal if is_in_place => normal.as_vec3(),
+                normal => (cofactors * normal).normalize_or_zero().as_vec3(),
             };
             let normals = document.vectors(accessor, turn)?;
             expect(normals.len())?;
-            self.normals.add(base, normals, DVec3::ZERO);
+            self.normals.add(base, normals, Vec3::ZERO);
         }
         for (set, &accessor) in attributes.uvs.iter().enumerate() {
             let uvs = document.vectors(accessor, DVec2::from_array)?;
@@ -261,14 +261,14 @@ impl Soup {
     /// True where some vertices have a normal and others do not.
     fn lacks_normals(&self) -> bool {
         let Column(normals) = &self.normals;
-        !normals.is_empty() && (normals.len() < self.positions.len() || normals.contains(&DVec3::ZERO))
+        !normals.is_empty() && (normals.len() < self.positions.len() || normals.contains(&Vec3::ZERO))
     }
 
     fn into_mesh(self, json: &Value) -> TriMesh {
         let lacks_normals = self.lacks_normals();
         let Self { positions, triangles, .. } = self;
         let count = positions.len();
-        let normals = self.normals.complete(count, DVec3::ZERO);
+        let normals = self.normals.complete(count, Vec3::ZERO);
         let corner_normals = match lacks_normals {
             true => triangles.iter().map(|triangle| corner_normals(triangle, &positions, &normals)).collect(),
             false => by_corner(&triangles, &normals),
@@ -295,10 +295,10 @@ impl Soup {
 
 /// Normals of the corners; that of the triangle, where vertices have none: without normals a mesh is shaded flat, says the
 /// format.
-fn corner_normals(triangle: &[u32; 3], positions: &[DVec3], normals: &[DVec3]) -> [DVec3; 3] {
-    let flat = || triangle_normal(triangle.map(|vertex| positions[vertex as usize]));
+fn corner_normals(triangle: &[u32; 3], positions: &[DVec3], normals: &[Vec3]) -> [Vec3; 3] {
+    let flat = || triangle_normal(triangle.map(|vertex| positions[vertex as usize])).as_vec3();
     triangle.map(|vertex| match normals[vertex as usize] {
-        DVec3::ZERO => flat(),
+        Vec3::ZERO => flat(),
         normal => normal,
     })
 }

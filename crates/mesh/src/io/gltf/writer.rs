@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use ::gltf::binary::{Glb, Header};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use glam::{DVec3, DVec4};
+use glam::{DVec4, Vec3};
 use serde_json::{Map, Value, json};
 
 use super::carried::{push, push_view};
@@ -96,9 +96,10 @@ impl Document {
         attributes.insert("POSITION".into(), position);
 
         if !mesh.corner.normals.is_empty() {
-            let normals = split.values(&mesh.corner.normals, DVec3::Z);
+            let normals = split.values(&mesh.corner.normals, Vec3::Z);
             // A corner without a normal still needs one of unit length.
-            let normals = normals.map(|normal| normal.try_normalize().unwrap_or(DVec3::Z).as_vec3().to_array());
+            let unit = |normal: Vec3| normal.as_dvec3().try_normalize().map_or(Vec3::Z, |normal| normal.as_vec3());
+            let normals = normals.map(|normal| unit(normal).to_array());
             attributes.insert("NORMAL".into(), self.push_floats("VEC3", normals));
         }
         for (number, set) in mesh.corner.uvs.iter().enumerate() {

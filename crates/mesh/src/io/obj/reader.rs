@@ -122,7 +122,8 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
     for object in objects {
         let numbers: Vec<u32> = numbers(object).collect();
         let uv = |corner: usize| DVec2::from_slice(&object.texcoords[2 * object.texcoord_indices[corner] as usize..]);
-        let normal = |corner: usize| DVec3::from_slice(&object.normals[3 * object.normal_indices[corner] as usize..]);
+        let normal =
+            |corner: usize| DVec3::from_slice(&object.normals[3 * object.normal_indices[corner] as usize..]).as_vec3();
         let mut start = 0;
         for (size, kind) in sizes(object).zip(&mut kinds) {
             let lacks_uvs = kind.has_uvs && object.texcoord_indices.is_empty();
@@ -143,7 +144,7 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
                 if has_normals {
                     mesh.corner.normals.push(match kind.has_normals {
                         true => triangle.map(|corner| normal(start + corner)),
-                        false => [triangle_normal(vertices.map(|vertex| positions[vertex as usize])); 3],
+                        false => [triangle_normal(vertices.map(|vertex| positions[vertex as usize])).as_vec3(); 3],
                     });
                 }
             };

@@ -6,10 +6,10 @@ use std::io::{self, Write};
 use rustc_hash::FxHashMap;
 
 use crate::TriMesh;
-use crate::io::text::LineWriter;
+use crate::io::text::{LineWriter, Number};
 
-/// Writes OBJ. Numbers are the shortest decimals that read back as the same doubles. Of several UV sets the first is
-/// written; corner colors, skin and textures have no place in the format.
+/// Writes OBJ. Numbers are the shortest decimals that read back as the same ones, normals in single
+/// precision. Of several UV sets the first is written; corner colors, skin and textures have no place in the format.
 pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
     let mut out = LineWriter::new(writer);
     for library in &mesh.assets.material_libraries {
@@ -66,11 +66,11 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
 }
 
 /// Writes each distinct value once, in the order of first use, and returns the numbers of the corners, from one.
-fn write_distinct<T: Copy, const N: usize>(
+fn write_distinct<T: Copy, F: Number, const N: usize>(
     out: &mut LineWriter<'_>,
     keyword: &str,
     corners: &[[T; 3]],
-    numbers: impl Fn(T) -> [f64; N],
+    numbers: impl Fn(T) -> [F; N],
 ) -> io::Result<Vec<[u32; 3]>>
 where
     [u64; N]: Hash + Eq,
@@ -82,7 +82,7 @@ where
         for (index, &corner) in triangle_indices.iter_mut().zip(triangle) {
             let value = numbers(corner);
             let next = known.len() as u32 + 1;
-            *index = *known.entry(value.map(f64::to_bits)).or_insert(next);
+            *index = *known.entry(value.map(|number| number.into().to_bits())).or_insert(next);
             if *index == next {
                 out.push_text(keyword);
                 out.push_numbers(value);

@@ -1,6 +1,6 @@
 //! The faces of a PLY file.
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4, Vec3};
 use ply_rs_bw::ply::{BeginList, ElementDef, PropertyAccess, PropertyAccessResult};
 
 use super::body::Body;
@@ -14,7 +14,7 @@ use crate::io::polygon::triangulate;
 pub(super) struct Triangles {
     pub(super) vertices: Vec<[u32; 3]>,
     pub(super) uvs: Vec<[DVec2; 3]>,
-    pub(super) normals: Vec<[DVec3; 3]>,
+    pub(super) normals: Vec<[Vec3; 3]>,
     pub(super) colors: Vec<[DVec4; 3]>,
     /// Of the face at hand: its vertices, their positions, and the corners of its triangles.
     corners: Vec<u32>,
@@ -55,7 +55,7 @@ impl Triangles {
         self.vertices.extend(self.split.iter().map(|triangle| triangle.map(|corner| self.corners[corner])));
 
         let uv = |list: &[f64]| <[f64; 2]>::try_from(list).ok().map(DVec2::from_array);
-        let normal = |list: &[f64]| <[f64; 3]>::try_from(list).ok().map(DVec3::from_array);
+        let normal = |list: &[f64]| <[f64; 3]>::try_from(list).ok().map(|normal| DVec3::from_array(normal).as_vec3());
         let color = |list: &[f64]| match *list {
             [r, g, b] => Some(DVec4::new(r, g, b, 1.0)),
             [r, g, b, alpha] => Some(DVec4::new(r, g, b, alpha)),

@@ -1,6 +1,6 @@
 //! The vertices of a PLY file.
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4, Vec3};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyAccess, PropertyAccessResult};
 
@@ -12,7 +12,7 @@ use crate::io::ParseError;
 #[derive(Default)]
 pub(super) struct Vertices {
     pub(super) positions: Vec<DVec3>,
-    pub(super) normals: Vec<DVec3>,
+    pub(super) normals: Vec<Vec3>,
     pub(super) uvs: Vec<DVec2>,
     pub(super) colors: Vec<DVec4>,
 }
@@ -31,7 +31,7 @@ impl Vertices {
         body.read(element, |_, vertex: Vertex| {
             vertices.positions.push(vertex.position);
             if has_normals {
-                vertices.normals.push(vertex.normal);
+                vertices.normals.push(vertex.normal.as_vec3());
             }
             if has_uvs {
                 vertices.uvs.push(vertex.uv);
@@ -41,7 +41,7 @@ impl Vertices {
             }
             Ok(())
         })?;
-        if vertices.normals.iter().all(|&normal| normal == DVec3::ZERO) {
+        if vertices.normals.iter().all(|&normal| normal == Vec3::ZERO) {
             vertices.normals.clear();
         }
         Ok(vertices)

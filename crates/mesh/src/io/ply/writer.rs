@@ -7,7 +7,7 @@ use glam::DVec4;
 use crate::TriMesh;
 use crate::io::text::{FLUSH_AT, flush};
 
-/// Writes binary little-endian PLY with doubles. Colors are bytes where bytes say the same, else floats.
+/// Writes binary little-endian PLY with doubles, and normals in floats, as meshes have them. Colors are bytes where bytes say the same, else floats.
 ///
 /// Of several UV sets the first is written; skin, materials and textures have no place in the format.
 pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
@@ -22,7 +22,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
     let mut header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.len());
     header.push_str("property double x\nproperty double y\nproperty double z\n");
     if vertex_normals.is_some() {
-        header.push_str("property double nx\nproperty double ny\nproperty double nz\n");
+        header.push_str("property float nx\nproperty float ny\nproperty float nz\n");
     }
     if vertex_uvs.is_some() {
         header.push_str("property double s\nproperty double t\n");
@@ -40,7 +40,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
     }
     let has_normal_lists = vertex_normals.is_none() && !normals.is_empty();
     if has_normal_lists {
-        header.push_str("property list uchar double normal\n");
+        header.push_str("property list uchar float normal\n");
     }
     if !corner_colors.is_empty() {
         header.push_str(&format!("property list uchar {} color\n", corner_color_depth.name()));
@@ -52,7 +52,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
     for (vertex, position) in mesh.positions.iter().enumerate() {
         push_doubles(&mut records, position.to_array());
         if let Some(normals) = &vertex_normals {
-            push_doubles(&mut records, normals[vertex].to_array());
+            push_singles(&mut records, normals[vertex].to_array());
         }
         if let Some(uvs) = &vertex_uvs {
             push_doubles(&mut records, uvs[vertex].to_array());
@@ -71,7 +71,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
         }
         if has_normal_lists {
             records.push(9);
-            normals[triangle].iter().for_each(|normal| push_doubles(&mut records, normal.to_array()));
+            normals[triangle].iter().for_each(|normal| push_singles(&mut records, normal.to_array()));
         }
         if let Some(colors) = corner_colors.get(triangle) {
             records.push(12);
@@ -99,6 +99,10 @@ fn by_vertex<T: Copy + Default + PartialEq>(mesh: &TriMesh, corners: &[[T; 3]]) 
 }
 
 fn push_doubles(records: &mut Vec<u8>, numbers: impl IntoIterator<Item = f64>) {
+    numbers.into_iter().for_each(|number| records.extend_from_slice(&number.to_le_bytes()));
+}
+
+fn push_singles(records: &mut Vec<u8>, numbers: impl IntoIterator<Item = f32>) {
     numbers.into_iter().for_each(|number| records.extend_from_slice(&number.to_le_bytes()));
 }
 
