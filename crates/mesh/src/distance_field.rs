@@ -53,7 +53,7 @@ pub struct DistanceFieldOptions {
     /// Distances are told apart up to this far from the surface, model units; nodes farther away, inside or outside, have this
     /// distance, and cost nearly nothing. Infinite for all.
     pub band: f64,
-    /// Bytes that the grid may take at most while it is built, estimated before any is taken: 28 a node. The hierarchy of the mesh
+    /// Bytes that the grid may take at most while it is built, estimated before any is taken: 16 a node. The hierarchy of the mesh
     /// takes about 180 bytes a triangle besides, until the field is built.
     pub memory_limit: u64,
 }
@@ -157,8 +157,8 @@ const KINK_CELLS: f64 = 2.0;
 /// Smaller: longer preparations for coarse ones.
 const NODES_A_TRIANGLE: usize = 4;
 
-/// Bytes a node takes while the field is built: sample, coefficient, winding number, and two copies in `f64` between the filters.
-const BYTES_PER_NODE: u64 = 4 + 4 + 4 + 2 * 8;
+/// Bytes a node takes while the field is built: sample, coefficient, and a copy in `f64` between the filters.
+const BYTES_PER_NODE: u64 = 4 + 4 + 8;
 
 impl DistanceField {
     /// Samples the distance to `mesh`.

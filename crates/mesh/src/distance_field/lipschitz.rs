@@ -3,224 +3,226 @@
 //! In Bézier form a polynomial lies in the convex hull of its control values, and the control values of its derivative along an axis
 //! are three times the differences of its own along that axis. Raised to the same degree along all axes, the three derivatives have
 //! control *vectors*, none of which the gradient can exceed in length. Halving a cell leaves a quarter of the slack.
-
 //!
-//! Few cells need that. Along an axis the control values of the derivative are means of the differences of the coefficients, so
-//! that the greatest differences along the three axes bound the gradient too, for whole rows of cells at once.
+//! All cells are bounded in `f32`, some of a row at once; then those that may be the steepest are halved.
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::Grid;
-use crate::extremes::greater;
+use super::real::Real;
+use crate::extremes::{greater, lesser};
 
-/// Times that a cell is halved along all axes. More: slower, for a bound less than a percent lower.
-const HALVINGS: usize = 1;
-
-/// Covers the rounding of the arithmetic below.
+/// Covers the rounding of the arithmetic in `f64`.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-/// Covers the rounding of differences of `f32` and of their squares. Smaller than 6 · 2⁻²⁴: the steepest cell could be missed.
-const DIFFERENCE_ROUNDING: f32 = 1.0 + 1e-6;
+/// Bound on the rounding of the length of a gradient in `f32` lanes, over the greatest difference of two coefficients of the cell.
+///
+/// With u = 2⁻²⁴: a control value is off by 13u, by the difference from the base and three conversions of 4u; a slope by six times
+/// that and 7u of its own; the length by √3 times that. Smaller: the steepest cell could be missed. Larger: more cells are halved.
+const SLOPE_ROUNDING: f32 = 160.0 / (1 << 24) as f32;
 
-/// Cells that are bounded at once.
-const LANES: usize = 8;
+/// Cells of a row that are bounded at once.
+const LANES: usize = 16;
 
 /// Control values of `N` cells, [z][y][x].
-type Control<const N: usize> = [[[[f64; N]; 4]; 4]; 4];
+type Control<T, const N: usize> = [[[[T; N]; 4]; 4]; 4];
 
 /// Upper bound on the length of the gradient in all cells that have all neighbors and where the spline may be positive.
 pub(super) fn lipschitz(grid: &Grid, coefficients: &[f32]) -> f64 {
     let [nx, ny, nz] = grid.dims;
-    if nx < 4 {
+    if nx < 4 || ny < 4 || nz < 4 {
         return 0.0;
     }
-    let row_starts = |layer: usize| (0..ny.saturating_sub(3)).map(move |row| (layer * ny + row) * nx);
-    let layers = (0..nz.saturating_sub(3)).into_par_iter();
-
-    // The steepest cell of each layer by the quick bound is nearly the steepest; then only its rivals need a look.
-    let known = (layers.clone())
-        .map_init(Differences::default, |differences, layer| {
-            let mut steepest = (0.0, 0);
-            for start in row_starts(layer) {
-                row_bounds(&coefficients[start..], [nx, ny], differences);
-                for (cell, &bound) in differences.bounds.iter().enumerate() {
-                    if bound > steepest.0 {
-                        steepest = (bound, start + cell);
-                    }
-                }
-            }
-            refined_bound(&bezier(coefficients, [steepest.1], nx, nx * ny), HALVINGS, 0.0)
-        })
-        .reduce(|| 0.0, f64::max);
-    let steepest = layers
-        .map_init(Differences::default, |differences, layer| {
-            let mut rivals = Vec::new();
-            for start in row_starts(layer) {
-                row_bounds(&coefficients[start..], [nx, ny], differences);
-                let bounds = differences.bounds.iter().enumerate();
-                rivals.extend(bounds.filter(|&(_, &bound)| f64::from(bound) > known).map(|(cell, _)| start + cell));
-            }
-            (rivals.chunks(LANES)).fold(known, |known, cells| steepest_of(coefficients, cells, nx, nx * ny, known))
-        })
-        .reduce(|| 0.0, f64::max);
-    steepest.sqrt() / grid.cell * ROUNDING
+    let layer = nx * ny;
+    let mut bounds = vec![0.0; layer * (nz - 3)];
+    // The greatest found so far, as bits, which of positive numbers have the order of the numbers. What threads find when decides
+    // what they skip, but nothing that they skip is greater than what is found in the end.
+    let known = AtomicU64::new(0);
+    let refine = |cell: usize| {
+        known.fetch_max(halved_bound(&coefficients[cell..], nx, layer).to_bits(), Relaxed);
+    };
+    bounds.par_chunks_mut(layer).enumerate().for_each(|(k, bounds)| {
+        let steepest = bound_layer(&coefficients[k * layer..], nx, bounds);
+        refine(k * layer + steepest);
+    });
+    bounds.par_iter().enumerate().for_each(|(cell, &bound)| {
+        if f64::from(bound) > f64::from_bits(known.load(Relaxed)) {
+            refine(cell);
+        }
+    });
+    f64::from_bits(known.into_inner()).sqrt() / grid.cell * ROUNDING
 }
 
-/// The greatest of `known` and the squared bounds of up to [`LANES`] cells.
+/// Sets squared bounds on the gradient in the cells of a layer, zero where the spline is not positive; the first coefficient of the
+/// layer is the first of these. Gives the cell with the greatest bound.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
-fn steepest_of(coefficients: &[f32], cells: &[usize], row: usize, layer: usize, known: f64) -> f64 {
-    // Lanes without a cell repeat the last one.
-    let corners: [usize; LANES] = std::array::from_fn(|lane| cells[lane.min(cells.len() - 1)]);
-    let control = bezier(coefficients, corners, row, layer);
-    let bounds = bounds(&control);
-    let mut steepest = known;
-    for lane in 0..LANES {
-        if bounds[lane] > steepest {
-            steepest = refined_bound(&one_of(&control, lane), HALVINGS, steepest);
+fn bound_layer(coefficients: &[f32], nx: usize, bounds: &mut [f32]) -> usize {
+    let layer = bounds.len();
+    let (mut steepest, mut greatest) = (0, 0.0);
+    for row in (0..layer - 3 * nx).step_by(nx) {
+        for first in (0..nx - 3).step_by(LANES) {
+            let count = (nx - first).min(LANES + 3);
+            let line = |number: usize| &coefficients[row + number / 4 * layer + number % 4 * nx + first..][..count];
+            let found = if count == LANES + 3 {
+                bound_cells(&std::array::from_fn(|number| line(number).first_chunk().expect("as many")), greatest)
+            } else {
+                // Past the end of the row, the last coefficient is repeated.
+                let ended: [[f32; LANES + 3]; 16] =
+                    std::array::from_fn(|number| std::array::from_fn(|i| line(number)[i.min(count - 1)]));
+                bound_cells(&ended.each_ref(), greatest)
+            };
+            let cells = count - 3;
+            bounds[row + first..][..cells].copy_from_slice(&found[..cells]);
+            let largest = found.iter().fold(0.0, |largest, &bound| greater(largest, bound));
+            if largest > greatest {
+                let cell = found[..cells].iter().position(|&bound| bound == largest);
+                cell.inspect(|cell| (steepest, greatest) = (row + first + cell, largest));
+            }
         }
     }
     steepest
 }
 
-/// Greatest differences of neighboring coefficients, scratch for [`row_bounds`].
-#[derive(Default)]
-struct Differences {
-    /// In a column of 4 × 4 coefficients: along x to the next column, along y, along z.
-    columns: [Vec<f32>; 3],
-    /// The greatest coefficient in a column.
-    greatest: Vec<f32>,
-    /// Squared bounds on the gradient of a row of cells; zero where the spline is not positive.
-    bounds: Vec<f32>,
-}
-
-/// Quick bounds for all cells of the row whose first coefficient is the first of these.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
-fn row_bounds(coefficients: &[f32], [nx, ny]: [usize; 2], differences: &mut Differences) {
-    let Differences { columns: [along_x, along_y, along_z], greatest, bounds } = differences;
-    for column in [&mut *along_x, along_y, along_z] {
-        column.clear();
-        column.resize(nx, 0.0);
-    }
-    greatest.clear();
-    greatest.resize(nx, 0.0);
-    let row = |j: usize, k: usize| &coefficients[(k * ny + j) * nx..][..nx];
-    for (j, k) in (0..4).flat_map(|k| (0..4).map(move |j| (j, k))) {
-        let here = row(j, k);
-        for ((along_x, pair), (greatest, here)) in
-            along_x.iter_mut().zip(here.windows(2)).zip(greatest.iter_mut().zip(here))
-        {
-            *along_x = greater(*along_x, (pair[1] - pair[0]).abs());
-            *greatest = greater(*greatest, *here);
-        }
-        greatest[nx - 1] = greater(greatest[nx - 1], here[nx - 1]);
-        if j < 3 {
-            raise_by_difference(along_y, here, row(j + 1, k));
-        }
-        if k < 3 {
-            raise_by_difference(along_z, here, row(j, k + 1));
-        }
-    }
-    bounds.clear();
-    bounds.extend((along_x.windows(4).zip(along_y.windows(4)).zip(along_z.windows(4)).zip(greatest.windows(4))).map(
-        |(((x, y), z), greatest)| {
-            let of_four = |values: &[f32]| greater(greater(values[0], values[1]), greater(values[2], values[3]));
-            let x = greater(greater(x[0], x[1]), x[2]);
-            let (y, z) = (of_four(y), of_four(z));
-            let bound = (x * x + y * y + z * z) * DIFFERENCE_ROUNDING;
-            if of_four(greatest) > 0.0 { bound } else { 0.0 }
-        },
-    ));
-}
-
+/// Squared bounds for the cells that 16 lines of coefficients pass by, in layers of four. Bounds not above `known` need not be close.
 #[inline(always)]
-fn raise_by_difference(greatest: &mut [f32], one: &[f32], other: &[f32]) {
-    for ((greatest, one), other) in greatest.iter_mut().zip(one).zip(other) {
-        *greatest = greater(*greatest, (other - one).abs());
-    }
-}
-
-/// The greater of `known` and the squared bound in a cell with these control values.
-fn refined_bound(control: &Control<1>, halvings: usize, known: f64) -> f64 {
-    // The part is 2^(halvings done) times shorter than the cell, and so are the differences of its control values.
-    let parts_along = f64::from(1 << (HALVINGS - halvings));
-    let [bound] = bounds(control).map(|bound| bound * parts_along * parts_along);
-    if bound <= known {
-        known
-    } else if halvings == 0 {
-        bound
-    } else {
-        (0..8).fold(known, |known, part| {
-            let part = half::<2>(&half::<1>(&half::<0>(control, part & 1), part >> 1 & 1), part >> 2 & 1);
-            refined_bound(&part, halvings - 1, known)
-        })
-    }
-}
-
-/// For each lane the largest squared length of a control vector of the gradient; zero where all control values are negative.
-#[inline(always)]
-fn bounds<const N: usize>(control: &Control<N>) -> [f64; N] {
-    let slopes = |line: [f64; 4]| {
-        let [a, b, c, d] = line;
-        // Control values of degree two, raised to degree three.
-        let (first, second, third) = (3.0 * (b - a), 3.0 * (c - b), 3.0 * (d - c));
-        [first, (first + 2.0 * second) / 3.0, (2.0 * second + third) / 3.0, third]
-    };
-    let (x, y, z) = (along::<N, 0>(control, slopes), along::<N, 1>(control, slopes), along::<N, 2>(control, slopes));
-    let (mut largest, mut bounds) = ([f64::NEG_INFINITY; N], [0.0; N]);
-    for k in 0..4 {
-        for j in 0..4 {
-            for i in 0..4 {
-                let (x, y, z, value) = (&x[k][j][i], &y[k][j][i], &z[k][j][i], &control[k][j][i]);
-                for lane in 0..N {
-                    let squared = x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane];
-                    bounds[lane] = if squared > bounds[lane] { squared } else { bounds[lane] };
-                    largest[lane] = if value[lane] > largest[lane] { value[lane] } else { largest[lane] };
-                }
+fn bound_cells(lines: &[&[f32; LANES + 3]; 16], known: f32) -> [f32; LANES] {
+    // Least and greatest of the columns, in two parts that overlap, each as long as a vector.
+    let parts = [0, 3].map(|column| *from_column(lines[0], column));
+    let (mut least, mut greatest) = (parts, parts);
+    for line in &lines[1..] {
+        for (part, column) in [0, 3].into_iter().enumerate() {
+            let values = from_column(line, column);
+            for i in 0..LANES {
+                least[part][i] = lesser(least[part][i], values[i]);
+                greatest[part][i] = greater(greatest[part][i], values[i]);
             }
         }
     }
-    for lane in 0..N {
-        bounds[lane] = if largest[lane] > 0.0 { bounds[lane] } else { 0.0 };
+    let joined = |[first, last]: [[f32; LANES]; 2]| {
+        let mut line = [0.0; LANES + 3];
+        line[..LANES].copy_from_slice(&first);
+        line[3..].copy_from_slice(&last);
+        line
+    };
+    let (least, greatest) = (joined(least), joined(greatest));
+    let [l0, l1, l2, l3] = [0, 1, 2, 3].map(|column| from_column(&least, column));
+    let [g0, g1, g2, g3] = [0, 1, 2, 3].map(|column| from_column(&greatest, column));
+    let (mut ranges, mut bounds) = ([0.0; LANES], [0.0; LANES]);
+    for i in 0..LANES {
+        let least = lesser(lesser(l0[i], l1[i]), lesser(l2[i], l3[i]));
+        let greatest = greater(greater(g0[i], g1[i]), greater(g2[i], g3[i]));
+        ranges[i] = if greatest > 0.0 { greatest - least } else { 0.0 };
+        // No slope along an axis exceeds the range.
+        bounds[i] = 3.0 * ranges[i] * ranges[i] * (1.0 + SLOPE_ROUNDING);
+    }
+    if bounds.iter().all(|&bound| bound <= known) {
+        return bounds;
+    }
+    // Differences of near numbers lose nothing.
+    let base = from_column(lines[5], 1);
+    let mut control = [[[[0.0; LANES]; 4]; 4]; 4];
+    for (control, line) in control.as_flattened_mut().iter_mut().zip(lines) {
+        for (column, control) in control.iter_mut().enumerate() {
+            let values = from_column(line, column);
+            for i in 0..LANES {
+                control[i] = values[i] - base[i];
+            }
+        }
+    }
+    let slopes = squared_slopes(&to_bezier(&control));
+    for i in 0..LANES {
+        let bound = slopes[i].sqrt() + SLOPE_ROUNDING * ranges[i];
+        bounds[i] = if ranges[i] > 0.0 { bound * bound } else { 0.0 };
     }
     bounds
 }
 
-/// The Bézier form of the cells whose first coefficients are at `corners`.
+/// The columns of a line that begin with this one.
 #[inline(always)]
-fn bezier<const N: usize>(coefficients: &[f32], corners: [usize; N], row: usize, layer: usize) -> Control<N> {
-    let mut control = [[[[0.0; N]; 4]; 4]; 4];
+fn from_column(line: &[f32; LANES + 3], column: usize) -> &[f32; LANES] {
+    line[column..].first_chunk().expect("a column of the first cell")
+}
+
+/// The squared bound in the cell whose first coefficient is the first of these: the greatest of those in its eight halves along all
+/// axes, zero where the spline is not positive.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
+fn halved_bound(coefficients: &[f32], row: usize, layer: usize) -> f64 {
+    let mut control = [[[[0.0; 8]; 4]; 4]; 4];
+    for (number, control) in control.as_flattened_mut().iter_mut().enumerate() {
+        let start = number / 4 * layer + number % 4 * row;
+        for (control, &coefficient) in control.iter_mut().zip(&coefficients[start..start + 4]) {
+            *control = [f64::from(coefficient); 8];
+        }
+    }
+    let halves = half::<2>(&half::<1>(&half::<0>(&to_bezier(&control))));
+    let mut greatest = [f64::NEG_INFINITY; 8];
+    for values in halves.as_flattened().as_flattened() {
+        for i in 0..8 {
+            greatest[i] = greater(greatest[i], values[i]);
+        }
+    }
+    // A half is half as long as the cell, and so are the differences of its control values.
+    let slopes = squared_slopes(&halves);
+    (0..8).fold(0.0, |bound, i| if greatest[i] > 0.0 { greater(bound, 4.0 * slopes[i]) } else { bound })
+}
+
+/// For each lane the largest squared length of a control vector of the gradient.
+#[inline(always)]
+fn squared_slopes<T: Real, const N: usize>(control: &Control<T, N>) -> [T; N] {
+    let [two, three, third] = [2.0, 3.0, 1.0 / 3.0].map(T::of);
+    let slopes = |_, [a, b, c, d]: [T; 4]| {
+        // Control values of degree two, raised to degree three.
+        let (first, second, last) = (three * (b - a), three * (c - b), three * (d - c));
+        [first, (first + two * second) * third, (two * second + last) * third, last]
+    };
+    let (x, y, z) =
+        (along::<T, N, 0>(control, slopes), along::<T, N, 1>(control, slopes), along::<T, N, 2>(control, slopes));
+    let mut largest = [T::ZERO; N];
     for k in 0..4 {
         for j in 0..4 {
-            for lane in 0..N {
-                let start = corners[lane] + k * layer + j * row;
-                let line = &coefficients[start..start + 4];
-                for i in 0..4 {
-                    control[k][j][i][lane] = f64::from(line[i]);
+            for i in 0..4 {
+                let (x, y, z) = (&x[k][j][i], &y[k][j][i], &z[k][j][i]);
+                for lane in 0..N {
+                    let squared = x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane];
+                    largest[lane] = greater(largest[lane], squared);
                 }
             }
         }
     }
-    let to_bezier = |[a, b, c, d]: [f64; 4]| {
-        [(a + 4.0 * b + c) / 6.0, (2.0 * b + c) / 3.0, (b + 2.0 * c) / 3.0, (b + 4.0 * c + d) / 6.0]
-    };
-    along::<N, 2>(&along::<N, 1>(&along::<N, 0>(&control, to_bezier), to_bezier), to_bezier)
+    largest
 }
 
-/// The lower (0) or upper (1) half of a cell along an axis, by de Casteljau's construction.
-fn half<const AXIS: usize>(control: &Control<1>, upper: usize) -> Control<1> {
-    along::<1, AXIS>(control, |[a, b, c, d]| {
+/// The Bézier form of cells with these coefficients.
+#[inline(always)]
+fn to_bezier<T: Real, const N: usize>(control: &Control<T, N>) -> Control<T, N> {
+    let [two, four, third, sixth] = [2.0, 4.0, 1.0 / 3.0, 1.0 / 6.0].map(T::of);
+    let convert = |_, [a, b, c, d]: [T; 4]| {
+        [(a + four * b + c) * sixth, (two * b + c) * third, (b + two * c) * third, (b + four * c + d) * sixth]
+    };
+    along::<T, N, 2>(&along::<T, N, 1>(&along::<T, N, 0>(control, convert), convert), convert)
+}
+
+/// Halves along an axis by de Casteljau's construction: in lanes whose number has the bit of the axis the upper half, else the lower.
+#[inline(always)]
+fn half<const AXIS: usize>(control: &Control<f64, 8>) -> Control<f64, 8> {
+    along::<f64, 8, AXIS>(control, |lane, [a, b, c, d]| {
         let (ab, bc, cd) = (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + d));
         let (abc, bcd) = (0.5 * (ab + bc), 0.5 * (bc + cd));
         let middle = 0.5 * (abc + bcd);
-        if upper == 0 { [a, ab, abc, middle] } else { [middle, bcd, cd, d] }
+        if lane >> AXIS & 1 == 0 { [a, ab, abc, middle] } else { [middle, bcd, cd, d] }
     })
 }
 
-/// Applies `map` to all lines of control values along an axis: 0 for x.
+/// Applies `map` to all lines of control values along an axis, 0 for x; it is told the lane.
 #[inline(always)]
-fn along<const N: usize, const AXIS: usize>(control: &Control<N>, map: impl Fn([f64; 4]) -> [f64; 4]) -> Control<N> {
-    let mut result = [[[[0.0; N]; 4]; 4]; 4];
+fn along<T: Real, const N: usize, const AXIS: usize>(
+    control: &Control<T, N>,
+    map: impl Fn(usize, [T; 4]) -> [T; 4],
+) -> Control<T, N> {
+    let mut result = [[[[T::ZERO; N]; 4]; 4]; 4];
     for u in 0..4 {
         for v in 0..4 {
             let at = |w: usize| match AXIS {
@@ -233,7 +235,7 @@ fn along<const N: usize, const AXIS: usize>(control: &Control<N>, map: impl Fn([
                     let [k, j, i] = at(w);
                     control[k][j][i][lane]
                 };
-                let mapped = map([of(0), of(1), of(2), of(3)]);
+                let mapped = map(lane, [of(0), of(1), of(2), of(3)]);
                 for w in 0..4 {
                     let [k, j, i] = at(w);
                     result[k][j][i][lane] = mapped[w];
@@ -242,8 +244,4 @@ fn along<const N: usize, const AXIS: usize>(control: &Control<N>, map: impl Fn([
         }
     }
     result
-}
-
-fn one_of(control: &Control<LANES>, lane: usize) -> Control<1> {
-    control.map(|plane| plane.map(|line| line.map(|values| [values[lane]])))
 }

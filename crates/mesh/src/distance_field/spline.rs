@@ -17,27 +17,37 @@ const GAIN: f64 = 6.0;
 /// Terms of the mirrored sum that starts the forward pass. |z|^28 < 1e-16; more change nothing.
 const START_TERMS: usize = 28;
 
+/// Rows of x that are filtered side by side, because each value of a row waits for the one before.
+const ROWS: usize = 8;
+
 /// Coefficients of the spline through `samples` (x fastest).
 pub(super) fn coefficients(samples: &[f32], dims: [usize; 3]) -> Vec<f32> {
     let [nx, ny, nz] = dims;
-    let mut work: Vec<f64> = samples.par_iter().map(|&sample| f64::from(sample)).collect();
-    work.par_chunks_mut(nx).for_each(|row| filter(row, 1));
-    work.par_chunks_mut(nx * ny).for_each(|slab| filter(slab, nx));
-    // Along z the lines cross all slabs: each task takes the lines of one row of x, copied out and back.
-    let rows: Vec<Vec<f64>> = (0..ny)
-        .into_par_iter()
-        .map(|j| {
-            let mut lines: Vec<f64> =
-                (0..nz).flat_map(|k| &work[(k * ny + j) * nx..(k * ny + j + 1) * nx]).copied().collect();
-            filter(&mut lines, nx);
-            lines
-        })
-        .collect();
+    let layer = nx * ny;
+    let mut work = vec![0.0; samples.len()];
+    work.par_chunks_mut(layer).zip(samples.par_chunks(layer)).for_each(|(work, samples)| {
+        let mut rows = vec![0.0; ROWS * nx];
+        for (work, samples) in work.chunks_mut(ROWS * nx).zip(samples.chunks(ROWS * nx)) {
+            for (row, samples) in samples.chunks(nx).enumerate() {
+                rows[row..].iter_mut().step_by(ROWS).zip(samples).for_each(|(to, &from)| *to = f64::from(from));
+            }
+            filter(&mut rows, ROWS);
+            for (row, work) in work.chunks_mut(nx).enumerate() {
+                work.iter_mut().zip(rows[row..].iter().step_by(ROWS)).for_each(|(to, &from)| *to = from);
+            }
+        }
+        filter(work, nx);
+    });
+    // Along z the lines cross all layers: each task takes those of one row of x, copied out and back.
     let mut coefficients = vec![0.0; samples.len()];
-    coefficients.par_chunks_mut(nx).enumerate().for_each(|(row, out)| {
-        let (j, k) = (row % ny, row / ny);
-        for (out, &value) in out.iter_mut().zip(&rows[j][k * nx..(k + 1) * nx]) {
-            *out = value as f32;
+    let mut rows: Vec<Vec<&mut [f32]>> = (0..ny).map(|_| Vec::with_capacity(nz)).collect();
+    coefficients.chunks_mut(nx).enumerate().for_each(|(row, out)| rows[row % ny].push(out));
+    rows.into_par_iter().enumerate().for_each_init(Vec::new, |lines, (j, rows)| {
+        lines.clear();
+        (0..nz).for_each(|k| lines.extend_from_slice(&work[k * layer + j * nx..][..nx]));
+        filter(lines, nx);
+        for (out, line) in rows.into_iter().zip(lines.chunks(nx)) {
+            out.iter_mut().zip(line).for_each(|(out, &value)| *out = value as f32);
         }
     });
     coefficients
