@@ -5,14 +5,16 @@ mod query;
 use std::{ffi::c_char, sync::Arc};
 
 use glam::DVec3;
+use isochore_field::Pose;
 use isochore_sculpt::{
     recipe::{Key, Mask, VertexWeights},
-    session::{self, DirtyRange, InteractiveRefinement},
+    session::{self, DirtyRange, InteractiveRefinement, NormalWeights},
 };
 
 pub use query::{
-    Arrow, Hit, Origin, isochore_session_closest_point, isochore_session_moved_volume, isochore_session_origin,
-    isochore_session_pick, isochore_session_preview, isochore_session_vertices_in_reach, isochore_session_volume,
+    Arrow, History, Hit, Origin, isochore_session_closest_point, isochore_session_history,
+    isochore_session_moved_volume, isochore_session_origin, isochore_session_pick, isochore_session_preview,
+    isochore_session_vertices_in_reach, isochore_session_volume,
 };
 
 use crate::{
@@ -46,6 +48,8 @@ pub struct SessionOptions {
     pub weights: *const f64,
     /// Number of weights.
     pub weight_count: usize,
+    /// Whether triangles are weighted by their angles in vertex normals, and not by their areas.
+    pub angle_normals: bool,
     /// Whether strokes end as the flow leaves them, without the small displacement that gives back the volume exactly.
     pub unlocked: bool,
     /// What else a recipe says under `mask`, in JSON: `{"pins": [...], "mirror": [...], "fade": 0.1}`.
@@ -116,6 +120,32 @@ pub enum Buffer {
     Indices = 3,
 }
 
+/// Why a stroke ended without its lock.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum LockSkipped {
+    /// It did not: the lock acted.
+    #[default]
+    No = 0,
+    /// The session has none.
+    Off = 1,
+    /// The surface is open and has no volume.
+    NeedsClosed = 2,
+    /// Nothing has moved that the volume depends on; what is missing is left for the lock of the next stroke.
+    NoHold = 3,
+}
+
+impl From<Option<session::LockSkipped>> for LockSkipped {
+    fn from(skipped: Option<session::LockSkipped>) -> Self {
+        match skipped {
+            None => Self::No,
+            Some(session::LockSkipped::Off) => Self::Off,
+            Some(session::LockSkipped::NeedsClosed) => Self::NeedsClosed,
+            Some(session::LockSkipped::NoHold) => Self::NoHold,
+        }
+    }
+}
+
 /// What one stroke did.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
@@ -130,6 +160,10 @@ pub struct StrokeReceipt {
     pub removed_vertices: usize,
     /// Edges that were flipped.
     pub flipped_edges: usize,
+    /// Whether the limit on triangles kept edges from being split.
+    pub is_limited: bool,
+    /// The most edges in any move that stayed too long because the stroke has stirred the surface there too much for a split to help.
+    pub refused_splits: usize,
     /// Whether the surface is closed, and the changes of its volume below mean something.
     pub has_volume: bool,
     /// Signed change of the volume by the flow, cubic model units.
@@ -140,6 +174,10 @@ pub struct StrokeReceipt {
     pub volume_remeshing: f64,
     /// Bound on the rounding in these.
     pub volume_rounding: f64,
+    /// Longest displacement by the lock, model units; zero where it was skipped.
+    pub lock_max_shift: f64,
+    /// Why the lock was skipped.
+    pub lock_skipped: LockSkipped,
     /// Bytes that undo holds for it.
     pub undo_bytes: usize,
     /// Older strokes that undo forgot to make room.
@@ -166,6 +204,9 @@ pub unsafe extern "C" fn isochore_session_new(
             }
             if options.undo_bytes != 0 {
                 chosen.undo_bytes = options.undo_bytes;
+            }
+            if options.angle_normals {
+                chosen.normals = NormalWeights::Angle;
             }
             chosen.lock = !options.unlocked;
             // SAFETY: as the caller promises.
@@ -243,22 +284,21 @@ pub unsafe extern "C" fn isochore_session_move_to(
 ) -> Status {
     guarded(|| {
         // SAFETY: as the caller promises.
-        let (session, key) = unsafe { (reference_mut("session", session)?, key(at, rotate)?) };
-        session.session.move_to(&key.pose(), time)?;
+        let (session, pose) = unsafe { (reference_mut("session", session)?, pose(at, rotate)?) };
+        session.session.move_to(&pose, time)?;
         Ok(())
     })
 }
 
 /// # Safety
 /// `at` is NULL or has three values, `rotate` is NULL or has four.
-unsafe fn key(at: *const f64, rotate: *const f64) -> Result<Key, Failure> {
+unsafe fn pose(at: *const f64, rotate: *const f64) -> Result<Pose, Failure> {
     let no_turn = [0.0, 0.0, 1.0, 0.0];
     // SAFETY: as the caller promises.
-    unsafe {
-        let at = array("at", at, 3)?;
-        let rotate = if rotate.is_null() { &no_turn } else { array("rotate", rotate, 4)? };
-        Ok(Key { at: [at[0], at[1], at[2]], rotate: [rotate[0], rotate[1], rotate[2], rotate[3]] })
-    }
+    let (at, rotate) =
+        unsafe { (array("at", at, 3)?, if rotate.is_null() { &no_turn } else { array("rotate", rotate, 4)? }) };
+    let key = Key { at: [at[0], at[1], at[2]], rotate: [rotate[0], rotate[1], rotate[2], rotate[3]] };
+    key.pose().map_err(Failure::argument)
 }
 
 /// Ends the stroke. `receipt` may be NULL.
@@ -278,11 +318,15 @@ pub unsafe extern "C" fn isochore_session_end_stroke(session: *mut Session, rece
             inserted_vertices: done.inserted_vertices,
             removed_vertices: done.removed_vertices,
             flipped_edges: done.flipped_edges,
+            is_limited: done.is_limited,
+            refused_splits: done.refused_splits,
             has_volume: done.volume.is_some(),
             volume_flow: volume.flow,
             volume_splits: volume.splits,
             volume_remeshing: volume.remeshing,
             volume_rounding: volume.rounding,
+            lock_max_shift: done.lock_max_shift.unwrap_or(0.0),
+            lock_skipped: done.lock_skipped.into(),
             undo_bytes: done.undo_bytes,
             forgotten_strokes: done.forgotten_strokes,
         };

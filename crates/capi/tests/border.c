@@ -96,12 +96,13 @@ static void recipes(void) {
 }
 
 static void sessions(void) {
-    const double start[] = {0, 0, 2}, end[] = {0.2, 0, 1}, down[] = {0, 0, -1}, above[] = {0.2, 0.2, 5}, nowhere[] = {NAN, 0, 0};
+    const double start[] = {0, 0, 2}, end[] = {0.2, 0, 1}, down[] = {0, 0, -1}, above[] = {0.2, 0.2, 5}, nowhere[] = {NAN, 0, 0}, axis[] = {0, 0, 0, 90};
     IsochoreMesh *mesh = tetrahedron(), *moved = NULL, *again = NULL, *back = NULL;
     IsochoreTool *tool = NULL;
     IsochoreSession *session = NULL;
     IsochoreStrokeReceipt receipt;
     IsochoreBuffers buffers;
+    IsochoreHistory history;
     const IsochoreRange *ranges = NULL;
     IsochoreHit hit;
     size_t count = 0;
@@ -116,6 +117,7 @@ static void sessions(void) {
     IsochoreSessionOptions options;
     memset(&options, 0, sizeof options);
     options.unlocked = true;
+    options.angle_normals = true;
     CHECK(isochore_session_new(mesh, &options, &session) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_take_changes(session) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_changed(session, ISOCHORE_BUFFER_INDICES, &ranges, &count) == ISOCHORE_STATUS_OK);
@@ -126,10 +128,16 @@ static void sessions(void) {
     CHECK(isochore_session_begin_stroke(session, tool, &UNREFINED) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_undo(session, &done) == ISOCHORE_STATUS_STATE);
     CHECK(isochore_session_move_to(session, nowhere, NULL, 0) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_session_move_to(session, start, axis, 0) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(strstr(isochore_last_error(), "rotate") != NULL);
     CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_end_stroke(session, &receipt) == ISOCHORE_STATUS_OK);
     CHECK(receipt.moves == 1 && receipt.touched_vertices > 0 && receipt.has_volume);
+    CHECK(receipt.lock_skipped == ISOCHORE_LOCK_SKIPPED_OFF && receipt.lock_max_shift == 0);
+    CHECK(isochore_session_history(session, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_session_history(session, &history) == ISOCHORE_STATUS_OK);
+    CHECK(history.undoable == 1 && history.redoable == 0 && history.forgotten == 0 && history.bytes == receipt.undo_bytes);
     CHECK(isochore_session_volume(session, &volume) == ISOCHORE_STATUS_OK);
     CHECK(fabs(volume - 1.0 / 6 - receipt.volume_flow) < 1e-14);
     CHECK(isochore_session_buffers(session, &buffers) == ISOCHORE_STATUS_OK);
@@ -222,6 +230,8 @@ static void queries(void) {
         CHECK(isochore_session_move_to(session, below, NULL, 1) == ISOCHORE_STATUS_OK);
         CHECK(isochore_session_end_stroke(session, &receipt) == ISOCHORE_STATUS_OK);
         CHECK((receipt.inserted_vertices > 0) == (stroke == 2));
+        CHECK(receipt.is_limited == (stroke == 1));
+        CHECK(receipt.lock_skipped == ISOCHORE_LOCK_SKIPPED_NO && receipt.lock_max_shift > 0);
         isochore_tool_free(tool);
     }
     strokes[0].longest_edge = -1;

@@ -250,7 +250,12 @@ class Session:
         """
 
     def end_stroke(self) -> dict[str, Any]:
-        """Ends the stroke; its receipt, with signed changes of volume by the flow, by splits and by remeshing apart."""
+        """Ends the stroke; its receipt, with signed changes of volume by the flow, by splits and by remeshing apart.
+
+        lock_max_shift: the longest displacement by the lock, model units; None where it was skipped. lock_skipped: why it was: "off",
+        the session has none; "needs_closed", the surface is open; "no_hold", nothing moved that the volume depends on, and the lock of
+        the next stroke has to make up for what is missing. None where it acted.
+        """
 
     def cancel_stroke(self) -> None:
         """Takes back the stroke under way."""
@@ -303,16 +308,30 @@ class Session:
         """The nearest point of the surface, as `pick` tells of it."""
 
     def vertices_in_reach(self, tool: Tool, at: ArrayLike, *, rotate: ArrayLike = ...) -> NDArray[np.uint32]:
-        """Numbers (N,) of the vertices that a stroke of the tool would move at this pose, in ascending order."""
+        """Numbers (N,) of the vertices that a stroke of the tool would move at this pose, in ascending order.
+
+        They count as reached where the flow has left them, without what the lock has added, and masks are not looked at.
+        """
 
     def preview(
-        self, tool: Tool, start: ArrayLike, end: ArrayLike, *, per_side: int = 12
+        self,
+        tool: Tool,
+        start: ArrayLike,
+        end: ArrayLike,
+        *,
+        start_rotate: ArrayLike = ...,
+        end_rotate: ArrayLike = ...,
+        per_side: int = 12,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Points (N, 3) around the tool, and where a move from `start` to `end` would shift them, (N, 3): arrows to draw."""
 
     @property
     def moved_volume(self) -> tuple[float, float]:
         """Volume that the stroke under way has moved outward and inward so far, cubic model units."""
+
+    @property
+    def is_stroke_under_way(self) -> bool:
+        """Whether a stroke has begun and not ended."""
 
     @property
     def volume(self) -> float | None:

@@ -11,7 +11,10 @@ use isochore_field::Pose;
 use isochore_mesh::{NONE, Origin};
 use isochore_sculpt::{
     recipe::Key,
-    session::{self, DirtyRange, InteractiveRefinement, NormalWeights, RenderBuffers, SessionOptions, StrokeOptions},
+    session::{
+        self, DirtyRange, InteractiveRefinement, LockSkipped, NormalWeights, RenderBuffers, SessionOptions,
+        StrokeOptions,
+    },
 };
 use numpy::{Element, IntoPyArray};
 use pyo3::{
@@ -112,7 +115,7 @@ impl Session {
         rotate: [f64; 4],
         time: f64,
     ) -> Result<Bound<'py, PyDict>, Failure> {
-        let pose = Key { at, rotate }.pose();
+        let pose = pose(at, rotate)?;
         let receipt = self.change(py, |session| session.move_to(&pose, time).map_err(Failure::input))?;
         let dict = PyDict::new(py);
         dict.set_item("moved_vertices", receipt.moved_vertices)?;
@@ -120,6 +123,7 @@ impl Session {
         dict.set_item("removed_vertices", receipt.removed_vertices)?;
         dict.set_item("flipped_edges", receipt.flipped_edges)?;
         dict.set_item("is_limited", receipt.is_limited)?;
+        dict.set_item("refused_splits", receipt.refused_splits)?;
         dict.set_item("seconds", receipt.seconds.total())?;
         Ok(dict)
     }
@@ -133,6 +137,7 @@ impl Session {
         dict.set_item("removed_vertices", receipt.removed_vertices)?;
         dict.set_item("flipped_edges", receipt.flipped_edges)?;
         dict.set_item("is_limited", receipt.is_limited)?;
+        dict.set_item("refused_splits", receipt.refused_splits)?;
         let volume = receipt.volume.map(|volume| {
             let parts = [
                 ("flow", volume.flow),
@@ -144,6 +149,7 @@ impl Session {
         });
         dict.set_item("volume", volume.transpose()?)?;
         dict.set_item("lock_max_shift", receipt.lock_max_shift)?;
+        dict.set_item("lock_skipped", receipt.lock_skipped.map(LockSkipped::name))?;
         dict.set_item("undo_bytes", receipt.undo_bytes)?;
         dict.set_item("forgotten_strokes", receipt.forgotten_strokes)?;
         dict.set_item("seconds", receipt.seconds.total())?;
@@ -257,23 +263,28 @@ impl Session {
         tool: &Bound<'_, Tool>,
         at: [f64; 3],
         rotate: [f64; 4],
-    ) -> Bound<'py, PyAny> {
+    ) -> Result<Bound<'py, PyAny>, Failure> {
         let mut vertices = Vec::new();
-        self.lock().vertices_in_reach(&tool.get().tool, &Key { at, rotate }.pose(), &mut vertices);
-        vertices.into_pyarray(py).into_any()
+        self.lock().vertices_in_reach(&tool.get().tool, &pose(at, rotate)?, &mut vertices);
+        Ok(vertices.into_pyarray(py).into_any())
     }
 
     /// Points around a tool and where a move from one place to another would shift them.
-    #[pyo3(signature = (tool, start, end, *, per_side = 12))]
+    #[pyo3(signature = (
+        tool, start, end, *, start_rotate = [0.0, 0.0, 1.0, 0.0], end_rotate = [0.0, 0.0, 1.0, 0.0], per_side = 12
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "Python names them")]
     fn preview<'py>(
         &self,
         py: Python<'py>,
         tool: &Bound<'_, Tool>,
         start: [f64; 3],
         end: [f64; 3],
+        start_rotate: [f64; 4],
+        end_rotate: [f64; 4],
         per_side: usize,
     ) -> Result<(Bound<'py, PyAny>, Bound<'py, PyAny>), Failure> {
-        let [start, end] = [start, end].map(|at| Pose::at(at.into()));
+        let (start, end) = (pose(start, start_rotate)?, pose(end, end_rotate)?);
         let arrows = self.lock().preview(&tool.get().tool, &start, &end, per_side).map_err(Failure::input)?;
         let points: Vec<DVec3> = arrows.iter().map(|arrow| arrow.point).collect();
         let shifts: Vec<DVec3> = arrows.iter().map(|arrow| arrow.shift).collect();
@@ -285,6 +296,11 @@ impl Session {
     fn moved_volume(&self) -> (f64, f64) {
         let moved = self.lock().moved_volume();
         (moved.outward, moved.inward)
+    }
+
+    #[getter]
+    fn is_stroke_under_way(&self) -> bool {
+        self.lock().is_stroke_under_way()
     }
 
     #[getter]
@@ -362,6 +378,11 @@ impl Session {
         let rows = buffer(session.buffers());
         Ok(view(Bound::new(slf.py(), hold)?.into_any(), rows.as_flattened(), &[rows.len(), N]))
     }
+}
+
+/// A pose from a place and an axis with an angle in degrees.
+fn pose(at: [f64; 3], rotate: [f64; 4]) -> Result<Pose, Failure> {
+    Key { at, rotate }.pose().map_err(|error| Failure::Argument(error.to_string()))
 }
 
 fn hit_to_dict<'py>(py: Python<'py>, hit: &session::Hit) -> PyResult<Bound<'py, PyDict>> {

@@ -50,7 +50,15 @@ def test_volume_is_accounted_for(ball, brush):
 
 def test_lock_gives_the_volume_back(ball, brush):
     session = isochore.Session(ball)
-    assert stroke(session, brush)["lock_max_shift"] > 0
+    receipt = stroke(session, brush)
+    assert receipt["lock_max_shift"] > 0 and receipt["lock_skipped"] is None
+    # Far away, nothing moves.
+    session.begin_stroke(brush)
+    assert session.is_stroke_under_way
+    session.move_to([9, 0, 0])
+    session.move_to([9, 0, 1])
+    assert session.end_stroke()["lock_skipped"] == "no_hold" and not session.is_stroke_under_way
+    assert stroke(isochore.Session(ball, lock=False), brush)["lock_skipped"] == "off"
     locked, _ = session.export(lock=True)
     assert locked.volume == pytest.approx(ball.volume, rel=1e-13)
 
@@ -131,6 +139,9 @@ def test_queries(ball, brush):
     assert len(points) > 50 and np.all(np.linalg.norm(shifts, axis=1) > 0)
     center = np.argmin(np.linalg.norm(points - [0, 0, 1.2], axis=1))
     assert shifts[center] == pytest.approx([0, 0, -0.1], abs=1e-12)
+    _, turned = session.preview(brush, [0, 0, 1.2], [0, 0, 1.1], end_rotate=[0, 0, 1, 30])
+    # What the core holds turns about the tool's axis as it goes down.
+    assert turned[center][2] == pytest.approx(-0.1, abs=1e-12) and np.any(turned[center][:2] != 0)
     assert np.array_equal(session.vertices_of_render_vertices(), np.arange(len(ball.positions)))
 
 
@@ -142,8 +153,10 @@ def test_wrong_calls_are_refused(ball, brush):
     session.begin_stroke(brush)
     with pytest.raises(isochore.Error, match="under way"):
         session.undo()
-    with pytest.raises(isochore.Error, match="must be finite"):
+    with pytest.raises(ValueError, match="at: is NaN"):
         session.move_to([0, 0, float("nan")])
+    with pytest.raises(ValueError, match="rotate: has an axis of length zero"):
+        session.move_to([0, 0, 0], rotate=[0, 0, 0, 90])
     session.cancel_stroke()
     with pytest.raises(isochore.Error):
         isochore.Session(isochore.Mesh(np.eye(3), [[0, 1, 2], [0, 1, 2]]))

@@ -140,7 +140,7 @@ impl Workshop<'_> {
         let stroke = match stroke {
             Stroke::Move(motion) => {
                 let tool = Arc::clone(&tools[motion.tool.as_str()]);
-                let keys = motion.keys.iter().map(Key::pose).collect();
+                let keys = motion.keys.iter().map(Key::pose).collect::<Result<_, _>>()?;
                 field::Move::new(tool, keys, self.recipe.integrate.step).map(field::Stroke::Move)
             }
             Stroke::Twist(twist) => {
@@ -153,7 +153,7 @@ impl Workshop<'_> {
             }
             Stroke::Stamp(stamp) => {
                 let tool = Arc::clone(&tools[stamp.tool.as_str()]);
-                let keys = stamp.keys.iter().map(Key::pose).collect();
+                let keys = stamp.keys.iter().map(Key::pose).collect::<Result<_, _>>()?;
                 let step = self.recipe.integrate.step;
                 field::Stamp::new(tool, keys, step, stamp.relief).map(field::Stroke::Stamp)
             }
@@ -327,13 +327,6 @@ fn profile(profile: Profile) -> field::Profile {
         Profile::Quartic => field::Profile::Quartic,
         Profile::Contact => field::Profile::Contact,
         Profile::Thesis => field::Profile::Thesis,
-    }
-}
-
-impl Key {
-    /// The pose itself, world from tool.
-    pub fn pose(&self) -> field::Pose {
-        field::Pose { rotation: rotation(self.rotate), translation: DVec3::from_array(self.at) }
     }
 }
 

@@ -71,7 +71,7 @@ pub use export::Exported;
 pub use log::SessionReplayError;
 pub use options::{InteractiveRefinement, NormalWeights, SessionOptions, StrokeOptions};
 pub use query::{Arrow, Hit};
-pub use receipt::{History, MoveReceipt, MoveSeconds, StrokeReceipt, StrokeVolume};
+pub use receipt::{History, LockSkipped, MoveReceipt, MoveSeconds, StrokeReceipt, StrokeVolume};
 pub use tool::SessionTool;
 pub use volume::MovedVolume;
 
@@ -80,6 +80,7 @@ use crate::{
     scene,
 };
 use history::{Step, Steps};
+use locking::Locked;
 use log::LoggedStroke;
 use stroke::{ActiveStroke, Segment};
 use surface::Surface;
@@ -169,12 +170,11 @@ impl Session {
             return Err(field::StrokeError::NotFinite("the poses of the path").into());
         }
         // What the log will say, so that replaying it gives the same bits.
-        let key = log::key(pose);
-        let pose = key.pose();
-        self.move_to_key(key, pose, time)
+        self.move_to_key(log::key(pose), time)
     }
 
-    fn move_to_key(&mut self, key: Key, pose: field::Pose, time: f64) -> Result<MoveReceipt, SessionError> {
+    fn move_to_key(&mut self, key: Key, time: f64) -> Result<MoveReceipt, SessionError> {
+        let pose = key.pose()?;
         let stroke = self.stroke.as_ref().ok_or(SessionError::NoStroke)?;
         let last = stroke.times.last().copied().unwrap_or(f64::NEG_INFINITY);
         if !(time.is_finite() && time >= last) {
@@ -221,23 +221,31 @@ impl Session {
         }
         receipt.touched_vertices = self.surface.positions.edited().count();
         receipt.volume = self.opened_volume.map(|_| stroke.volume(&self.surface));
-        let mut shown_change = receipt.volume.map_or(0.0, |volume| volume.total());
-        if let Some(volume) = self.opened_volume.filter(|_| self.options.lock && stroke.keys.len() >= 2) {
-            let excess = self.shown_volume_change();
-            let locked = stroke.lock(&mut self.surface, excess, volume.abs());
-            (receipt.lock_max_shift, shown_change) = (locked.max_shift, locked.shown_change);
-        }
+        let locked = self.lock(&stroke);
+        (receipt.lock_max_shift, receipt.lock_skipped) = (locked.max_shift.ok(), locked.max_shift.err());
         let mut delta = self.surface.finish(stroke.alive);
         if stroke.keys.len() < 2 {
             self.surface.swap(&mut delta);
             return Ok(receipt);
         }
         let volume_change = receipt.volume.map(|volume| volume.total());
-        let stroke = LoggedStroke { tool: stroke.tool, keys: stroke.keys, volume_change, shown_change };
+        let stroke =
+            LoggedStroke { tool: stroke.tool, keys: stroke.keys, volume_change, shown_change: locked.shown_change };
         let step = Step { stroke, delta };
         receipt.undo_bytes = step.bytes();
         receipt.forgotten_strokes = self.steps.push(step, self.options.undo_bytes);
         Ok(receipt)
+    }
+
+    /// Locks the volume that the host sees, if the session does and the surface has one.
+    fn lock(&mut self, stroke: &ActiveStroke) -> Locked {
+        let unlocked = |skipped| Locked { max_shift: Err(skipped), shown_change: 0.0 };
+        let Some(volume) = self.opened_volume else { return unlocked(LockSkipped::NeedsClosed) };
+        if !self.options.lock {
+            return unlocked(LockSkipped::Off);
+        }
+        let excess = self.shown_volume_change();
+        stroke.lock(&mut self.surface, excess, volume.abs())
     }
 
     /// Takes back the stroke under way, to the bit.

@@ -1,6 +1,7 @@
 //! Reading, checking and writing recipes.
 
-use isochore_sculpt::recipe::{Format, Location, Override, Recipe, RecipeError};
+use glam::DVec3;
+use isochore_sculpt::recipe::{Format, Key, Location, Override, Recipe, RecipeError};
 
 /// A recipe that uses every key that exists.
 const FULL: &str = r#"recipe = 1
@@ -198,4 +199,22 @@ fn overrides_win_and_are_typed() {
     assert!(Override::parse("refine.enabled").is_err());
     assert!(Override::parse("refine..enabled=true").is_err());
     assert!(Override::parse("refine.volume=[1").is_err());
+}
+
+#[test]
+fn a_pose_must_have_numbers_and_an_axis() {
+    let key = Key { at: [1.0, 2.0, 3.0], rotate: [0.0, 0.0, 2.0, 90.0] };
+    let pose = key.pose().unwrap();
+    // The sine of a quarter turn is exact up to rounding.
+    assert!(pose.transform(DVec3::X).distance(DVec3::new(1.0, 3.0, 3.0)) < 1e-15);
+    let wrong = [
+        (Key { rotate: [0.0, 0.0, 0.0, 90.0], ..key.clone() }, "rotate", "axis of length zero"),
+        (Key { rotate: [0.0, 0.0, 1.0, f64::NAN], ..key.clone() }, "rotate", "NaN"),
+        (Key { at: [f64::INFINITY, 0.0, 0.0], ..key }, "at", "inf"),
+    ];
+    for (key, name, words) in wrong {
+        let error = key.pose().unwrap_err();
+        assert_eq!(error.key, name);
+        assert!(error.to_string().contains(words), "{error}");
+    }
 }

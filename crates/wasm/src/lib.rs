@@ -8,5 +8,7 @@
 
 mod error;
 mod mesh;
+mod options;
 mod replay;
 mod session;
+mod tool;

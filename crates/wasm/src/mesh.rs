@@ -5,13 +5,16 @@ use std::sync::Arc;
 use bytemuck::cast_slice;
 use glam::DVec3;
 use isochore_mesh::{
-    ClosedMesh, TriMesh,
+    ClosedMesh, SkinTable, TriMesh,
     io::{self, Format},
 };
 use js_sys::{Float64Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-use crate::error::thrown;
+use crate::{
+    error::thrown,
+    options::{MeshAttributes, options},
+};
 
 /// A triangle mesh, which does not change.
 #[wasm_bindgen]
@@ -20,19 +23,34 @@ pub struct Mesh {
     pub(crate) mesh: Arc<TriMesh>,
 }
 
+/// The joints that move each vertex, and their weights: as many for each, row by row. Copies, which stay.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Skin {
+    table: SkinTable,
+}
+
 #[wasm_bindgen]
 impl Mesh {
     /// Copies a mesh out of arrays: x, y, z of each vertex, model units, and three vertex indices of each triangle, counter-clockwise
     /// seen from outside.
     #[wasm_bindgen(constructor)]
-    pub fn new(positions: &[f64], triangles: &[u32]) -> Result<Mesh, JsError> {
+    pub fn new(positions: &[f64], triangles: &[u32], attributes: Option<MeshAttributes>) -> Result<Mesh, JsError> {
+        let attributes = options(attributes, &["joints", "weights"])?;
         let (points, rest) = positions.as_chunks::<3>();
         let (triangles, left) = triangles.as_chunks::<3>();
         if !rest.is_empty() || !left.is_empty() {
             return Err(thrown("positions and triangles have three numbers each"));
         }
-        let mesh = TriMesh::new(points.iter().map(|point| DVec3::from(*point)).collect(), triangles.to_vec());
+        let mut mesh = TriMesh::new(points.iter().map(|point| DVec3::from(*point)).collect(), triangles.to_vec());
         mesh.check_valid().map_err(thrown)?;
+        let (joints, weights) = (attributes.joints(), attributes.weights());
+        if joints.is_some() || weights.is_some() {
+            let (joints, weights) = (joints.unwrap_or_default(), weights.unwrap_or_default());
+            let vertices = mesh.positions.len();
+            let per_vertex = joints.len().checked_div(vertices).unwrap_or(0);
+            mesh.vertex.set_skin_table(vertices, per_vertex, &joints, &weights).map_err(thrown)?;
+        }
         Ok(Self { mesh: mesh.into() })
     }
 
@@ -65,10 +83,37 @@ impl Mesh {
         unsafe { Uint32Array::view(self.mesh.triangles.as_flattened()) }
     }
 
+    /// The skin; undefined where the mesh has none.
+    #[wasm_bindgen(getter)]
+    pub fn skin(&self) -> Option<Skin> {
+        Some(Skin { table: self.mesh.vertex.skin_table() }).filter(|skin| skin.table.per_vertex > 0)
+    }
+
     /// Signed volume, cubic model units; an open mesh is an error.
     #[wasm_bindgen(getter)]
     pub fn volume(&self) -> Result<f64, JsError> {
         Ok(ClosedMesh::new(&self.mesh).map_err(thrown)?.volume())
+    }
+}
+
+#[wasm_bindgen]
+impl Skin {
+    /// Joints in each row: the most that move any vertex.
+    #[wasm_bindgen(getter, js_name = perVertex)]
+    pub fn per_vertex(&self) -> usize {
+        self.table.per_vertex
+    }
+
+    /// The joints.
+    #[wasm_bindgen(getter)]
+    pub fn joints(&self) -> Vec<u32> {
+        self.table.joints.clone()
+    }
+
+    /// Their weights; those of a row sum to one, or to zero where no joint moves the vertex.
+    #[wasm_bindgen(getter)]
+    pub fn weights(&self) -> Vec<f64> {
+        self.table.weights.clone()
     }
 }
 

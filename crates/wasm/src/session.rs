@@ -1,41 +1,26 @@
 //! Sculpting sessions.
 
+mod query;
+mod receipt;
+
 use std::sync::Arc;
 
-use glam::DVec3;
-use isochore_mesh::Silent;
+use isochore_field::Pose;
 use isochore_sculpt::{
-    Meshes,
-    recipe::{self, Key},
-    session::{self, DirtyRange, Hit as SurfaceHit, InteractiveRefinement, SessionOptions, SessionTool, StrokeOptions},
+    recipe::{Key, VertexWeights},
+    session::{self, DirtyRange, InteractiveRefinement, NormalWeights},
 };
 use js_sys::{Float32Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-use crate::{error::thrown, mesh::Mesh};
+use receipt::{History, MoveReceipt, StrokeReceipt};
 
-/// A tool ready to work, made once and shared between strokes and sessions.
-#[wasm_bindgen]
-#[derive(Debug)]
-pub struct Tool {
-    tool: Arc<SessionTool>,
-}
-
-#[wasm_bindgen]
-impl Tool {
-    /// Makes a tool from what a recipe says of one, in JSON. `name` is what the log calls it; `mesh` is the mesh of a shape of that
-    /// kind, whose distance is sampled now.
-    #[wasm_bindgen(constructor)]
-    pub fn new(name: &str, description: &str, mesh: Option<Mesh>) -> Result<Tool, JsError> {
-        let description: recipe::Tool = serde_json::from_str(description).map_err(thrown)?;
-        let mut meshes = Meshes::new();
-        if let (recipe::ToolShape::Mesh(shape), Some(mesh)) = (&description.shape, mesh) {
-            meshes.insert(shape.mesh.clone(), mesh.mesh);
-        }
-        let tool = SessionTool::new(name, description, &meshes, &Silent).map_err(thrown)?;
-        Ok(Self { tool: Arc::new(tool) })
-    }
-}
+use crate::{
+    error::thrown,
+    mesh::Mesh,
+    options::{SessionOptions, StrokeOptions, keys, numbers, options},
+    tool::Tool,
+};
 
 /// A mesh that strokes deform one after the other, with undo and redo.
 ///
@@ -53,28 +38,29 @@ pub struct Changes {
     changes: session::Changes,
 }
 
-/// A point of the surface that a query found.
-#[wasm_bindgen]
-#[derive(Debug)]
-pub struct Hit {
-    hit: SurfaceHit,
-}
-
 #[wasm_bindgen]
 impl Session {
-    /// Opens a session on a manifold, oriented mesh. `weights` holds its vertices, by a number for each from 0, free, to 1, held, a
-    /// `Float64Array` or a `Float32Array`; `mask` is what else a recipe says under that key, in JSON:
-    /// `{"pins": […], "mirror": […], "fade": 0.1}`.
+    /// Opens a session on a manifold, oriented mesh.
     #[wasm_bindgen(constructor)]
-    pub fn new(mesh: &Mesh, weights: Option<Vec<f64>>, mask: Option<String>) -> Result<Session, JsError> {
-        let mut options = SessionOptions::default();
-        if let Some(mask) = mask {
-            options.mask = serde_json::from_str(&mask).map_err(|error| thrown(format!("mask: {error}")))?;
+    pub fn new(mesh: &Mesh, options: Option<SessionOptions>) -> Result<Session, JsError> {
+        let known = ["step", "undoBytes", "normals", "lock", "weights", "mask"];
+        let options = self::options(options, &known)?;
+        let mut chosen = session::SessionOptions::default();
+        chosen.step = options.step().unwrap_or(chosen.step);
+        chosen.undo_bytes = options.undo_bytes().map_or(chosen.undo_bytes, |bytes| bytes as usize);
+        chosen.lock = options.lock().unwrap_or(chosen.lock);
+        chosen.normals = match options.normals().as_deref() {
+            None | Some("area") => NormalWeights::Area,
+            Some("angle") => NormalWeights::Angle,
+            Some(other) => return Err(thrown(format!("normals are by \"area\" or \"angle\", not {other:?}"))),
+        };
+        if let Some(mask) = options.mask() {
+            chosen.mask = keys("mask", &mask)?;
         }
-        if let Some(weights) = weights {
-            options.mask.vertices = Some(recipe::VertexWeights::Values(weights));
+        if let Some(weights) = options.weights() {
+            chosen.mask.vertices = Some(VertexWeights::Values(weights));
         }
-        let session = session::Session::open(Arc::clone(&mesh.mesh), options).map_err(thrown)?;
+        let session = session::Session::open(Arc::clone(&mesh.mesh), chosen).map_err(thrown)?;
         Ok(Self { session })
     }
 
@@ -90,39 +76,44 @@ impl Session {
         Ok(())
     }
 
-    /// Begins a stroke; nothing moves before the second pose. `refine` lets edges in the tool's reach be split, those longer than
-    /// `longest_edge` where it is given (model units), up to `max_triangles`, and collapsed and flipped.
+    /// Begins a stroke; nothing moves before the second pose.
     #[wasm_bindgen(js_name = beginStroke)]
-    pub fn begin_stroke(
-        &mut self,
-        tool: &Tool,
-        refine: bool,
-        longest_edge: Option<f64>,
-        max_triangles: Option<u32>,
-    ) -> Result<(), JsError> {
+    pub fn begin_stroke(&mut self, tool: &Tool, options: Option<StrokeOptions>) -> Result<(), JsError> {
+        let options = self::options(options, &["refine", "longestEdge", "maxTriangles", "keep"])?;
         let usual = InteractiveRefinement::default();
+        let balls = options.keep().unwrap_or_default();
+        let (balls, rest) = balls.as_chunks::<4>();
+        if !rest.is_empty() {
+            return Err(thrown("keep has four numbers for each ball"));
+        }
         let refinement = InteractiveRefinement {
-            longest: longest_edge,
-            max_triangles: max_triangles.map_or(usual.max_triangles, |most| most as usize),
+            longest: options.longest_edge(),
+            max_triangles: options.max_triangles().map_or(usual.max_triangles, |most| most as usize),
+            keep: balls.iter().map(|&[x, y, z, radius]| ([x, y, z].into(), radius)).collect(),
             ..usual
         };
-        let options = StrokeOptions { refine: refine.then_some(refinement) };
-        self.session.begin_stroke(&tool.tool, options).map_err(thrown)
+        let refine = options.refine().unwrap_or(true).then_some(refinement);
+        self.session.begin_stroke(&tool.tool, session::StrokeOptions { refine }).map_err(thrown)
     }
 
     /// Moves the tool along a screw to a pose: x, y, z, model units, and optionally axis x, y, z and angle in degrees, absolute.
-    /// `time` is the host's, in seconds. Returns how many vertices moved.
+    /// `time` is the host's, in seconds.
     #[wasm_bindgen(js_name = moveTo)]
-    pub fn move_to(&mut self, at: &[f64], rotate: Option<Vec<f64>>, time: f64) -> Result<u32, JsError> {
-        let rotate = rotate.as_deref().unwrap_or(&[0.0, 0.0, 1.0, 0.0]);
-        let key = Key { at: numbers(at)?, rotate: numbers(rotate)? };
-        Ok(self.session.move_to(&key.pose(), time).map_err(thrown)?.moved_vertices as u32)
+    pub fn move_to(&mut self, at: &[f64], rotate: Option<Vec<f64>>, time: Option<f64>) -> Result<MoveReceipt, JsError> {
+        let receipt = self.session.move_to(&pose(at, rotate)?, time.unwrap_or(0.0)).map_err(thrown)?;
+        Ok(MoveReceipt { receipt })
     }
 
-    /// Ends the stroke. Returns the change of volume by it, cubic model units; undefined where the surface is open.
+    /// Ends the stroke.
     #[wasm_bindgen(js_name = endStroke)]
-    pub fn end_stroke(&mut self) -> Result<Option<f64>, JsError> {
-        Ok(self.session.end_stroke().map_err(thrown)?.volume.map(|volume| volume.total()))
+    pub fn end_stroke(&mut self) -> Result<StrokeReceipt, JsError> {
+        Ok(StrokeReceipt { receipt: self.session.end_stroke().map_err(thrown)? })
+    }
+
+    /// Whether a stroke has begun and not ended.
+    #[wasm_bindgen(getter, js_name = isStrokeUnderWay)]
+    pub fn is_stroke_under_way(&self) -> bool {
+        self.session.is_stroke_under_way()
     }
 
     /// Takes back the stroke under way.
@@ -141,6 +132,12 @@ impl Session {
         self.session.redo().map_err(thrown)
     }
 
+    /// What can be undone and redone.
+    #[wasm_bindgen(getter)]
+    pub fn history(&self) -> History {
+        History { history: self.session.history() }
+    }
+
     /// x, y, z of each render vertex, model units.
     #[wasm_bindgen(getter)]
     pub fn positions(&self) -> Float32Array {
@@ -153,10 +150,9 @@ impl Session {
         floats(self.session.buffers().normals.as_flattened())
     }
 
-    /// u, v of each render vertex, the first set; empty where the mesh has none.
-    #[wasm_bindgen(getter)]
-    pub fn uvs(&self) -> Float32Array {
-        floats(self.session.buffers().uvs.first().map_or(&[], |uvs| uvs.as_flattened()))
+    /// u, v of each render vertex in a set of texture coordinates, the first unless said otherwise; empty where there is no such set.
+    pub fn uvs(&self, set: Option<u32>) -> Float32Array {
+        floats(self.session.buffers().uvs.get(set.unwrap_or(0) as usize).map_or(&[], |uvs| uvs.as_flattened()))
     }
 
     /// Linear red, green, blue, alpha of each render vertex; empty where the mesh has none.
@@ -178,26 +174,21 @@ impl Session {
         Changes { changes: self.session.take_changes() }
     }
 
-    /// The first point of the surface on a ray.
-    pub fn pick(&self, origin: &[f64], direction: &[f64]) -> Result<Option<Hit>, JsError> {
-        let [origin, direction] = [DVec3::from(numbers(origin)?), DVec3::from(numbers(direction)?)];
-        Ok(self.session.pick(origin, direction).map(|hit| Hit { hit }))
-    }
-
-    /// Volume inside the surface without the stroke under way; undefined where it is open.
-    #[wasm_bindgen(getter)]
-    pub fn volume(&self) -> Option<f64> {
-        self.session.volume()
-    }
-
     /// All strokes that are done and not undone, as the JSON text of a recipe.
     pub fn log(&self) -> String {
         self.session.log().to_json()
     }
 
-    /// The surface as a mesh of its own; `lock` gives back the volume of the mesh as opened.
+    /// The surface as a mesh of its own. With `lock`, with what the lock has added at the end of each stroke; else where the flow
+    /// alone has taken it.
     pub fn export(&self, lock: bool) -> Mesh {
         Mesh { mesh: self.session.export(lock).mesh.into() }
+    }
+
+    /// Number in the session of each vertex of what `export` gives now.
+    #[wasm_bindgen(getter, js_name = exportedVertices)]
+    pub fn exported_vertices(&self) -> Vec<u32> {
+        self.session.vertices().collect()
     }
 }
 
@@ -234,27 +225,6 @@ impl Changes {
     }
 }
 
-#[wasm_bindgen]
-impl Hit {
-    /// x, y, z, model units.
-    #[wasm_bindgen(getter)]
-    pub fn point(&self) -> Vec<f64> {
-        self.hit.point.to_array().to_vec()
-    }
-
-    /// Unit normal of the triangle.
-    #[wasm_bindgen(getter)]
-    pub fn normal(&self) -> Vec<f64> {
-        self.hit.normal.to_array().to_vec()
-    }
-
-    /// Distance from where the ray begins.
-    #[wasm_bindgen(getter)]
-    pub fn distance(&self) -> f64 {
-        self.hit.distance
-    }
-}
-
 fn floats(values: &[f32]) -> Float32Array {
     // SAFETY: nothing is allocated before JavaScript has the view; what happens to it later is said where views are given.
     unsafe { Float32Array::view(values) }
@@ -264,6 +234,8 @@ fn pairs(ranges: &[DirtyRange]) -> Vec<u32> {
     ranges.iter().flat_map(|range| [range.start, range.end]).collect()
 }
 
-fn numbers<const N: usize>(values: &[f64]) -> Result<[f64; N], JsError> {
-    values.try_into().map_err(|_| thrown(format!("{N} numbers are wanted, not {}", values.len())))
+/// A pose from x, y, z and an axis x, y, z with an angle in degrees; without these, not turned.
+fn pose(at: &[f64], rotate: Option<Vec<f64>>) -> Result<Pose, JsError> {
+    let rotate = rotate.as_deref().unwrap_or(&[0.0, 0.0, 1.0, 0.0]);
+    Key { at: numbers(at)?, rotate: numbers(rotate)? }.pose().map_err(thrown)
 }

@@ -1,11 +1,10 @@
 //! What a host asks of a session.
 
 use glam::DVec3;
-use isochore_field::Pose;
 use isochore_mesh::NONE;
 use isochore_sculpt::session::Hit as SurfaceHit;
 
-use super::{Session, key};
+use super::{Session, pose};
 use crate::{
     error::{Failure, Status, guarded},
     memory::{array, put, put_slice, reference, reference_mut},
@@ -49,6 +48,20 @@ pub struct Origin {
     pub triangle: u32,
     /// Barycentric coordinates in that triangle.
     pub weights: [f64; 3],
+}
+
+/// What can be undone and redone.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct History {
+    /// Strokes that can be undone.
+    pub undoable: usize,
+    /// Strokes that can be redone.
+    pub redoable: usize,
+    /// Strokes that can no longer be undone, because there was no room for them; the log still has them.
+    pub forgotten: usize,
+    /// Bytes held.
+    pub bytes: usize,
 }
 
 /// The first point of the surface on a ray; `is_hit` tells whether there is one.
@@ -109,7 +122,8 @@ pub unsafe extern "C" fn isochore_session_volume(session: *const Session, volume
 }
 
 /// The vertices within the support of a tool at a pose, given as to `isochore_session_move_to`: those that it moves as soon as it
-/// moves, masks apart, in ascending order. They are in the session's own memory, until it is asked again.
+/// moves, masks apart, in ascending order. They count as reached where the flow has left them, without what the lock has added. They are
+/// in the session's own memory, until it is asked again.
 ///
 /// # Safety
 /// `session` and `tool` are handles; `at` has three values, `rotate` four where it is not NULL; `vertices` and `count` can be written
@@ -189,6 +203,22 @@ pub unsafe extern "C" fn isochore_session_moved_volume(
     })
 }
 
+/// What can be undone and redone.
+///
+/// # Safety
+/// `session` is a handle; `history` can be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn isochore_session_history(session: *const Session, history: *mut History) -> Status {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let now = unsafe { reference("session", session) }?.session.history();
+        let found =
+            History { undoable: now.undoable, redoable: now.redoable, forgotten: now.forgotten, bytes: now.bytes };
+        // SAFETY: as the caller promises.
+        unsafe { put("history", history, found) }
+    })
+}
+
 /// Where a render vertex comes from, one of those that the buffers hold.
 ///
 /// # Safety
@@ -215,17 +245,6 @@ pub unsafe extern "C" fn isochore_session_origin(
         // SAFETY: as the caller promises.
         unsafe { put("origin", origin, found) }
     })
-}
-
-/// # Safety
-/// `at` is NULL or has three values, `rotate` is NULL or has four.
-unsafe fn pose(at: *const f64, rotate: *const f64) -> Result<Pose, Failure> {
-    // SAFETY: as the caller promises.
-    let pose = unsafe { key(at, rotate) }?.pose();
-    if pose.translation.is_finite() && pose.rotation.is_finite() {
-        return Ok(pose);
-    }
-    Err(Failure::argument("a pose must be finite"))
 }
 
 /// # Safety

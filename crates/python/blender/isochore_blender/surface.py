@@ -118,7 +118,8 @@ class Surface:
     def _attributes(self):
         """Names, types, domains and values of all attributes but the topology and the selection, and the names of others.
 
-        Custom normals are stored relative to the surface, so they are given anew instead.
+        Names that begin with a dot are Blender's own, internal attributes, which it makes anew where it needs them. Custom normals are
+        stored relative to the surface, so they are given anew instead.
         """
         apart = ["position", "custom_normal"]
         named = [a for a in self.mesh.attributes if not a.name.startswith(".") and a.name not in apart]

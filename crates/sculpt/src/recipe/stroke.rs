@@ -1,15 +1,20 @@
 //! The strokes: one entry of the log for each thing done to the mesh.
 
+use glam::DVec3;
+use isochore_field as field;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
+    error::RecipeError,
     pose::Pose,
     region::Region,
     ring::Ring,
     strip::{SpinePoints, Strip},
     tagged::tagged,
+    validate::{all_finite, rotation},
 };
+use crate::scene;
 
 /// One deformation. Strokes act one after the other.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -83,6 +88,18 @@ pub struct Key {
     /// Axis x, y, z and angle in degrees, right-handed; absolute, not added to the pose before.
     #[serde(default = "super::no_rotation", skip_serializing_if = "super::is_no_rotation")]
     pub rotate: [f64; 4],
+}
+
+impl Key {
+    /// The pose itself, world from tool.
+    ///
+    /// # Errors
+    /// [`RecipeError`], naming `at` or `rotate`: a number is not finite, or the axis has no direction.
+    pub fn pose(&self) -> Result<field::Pose, RecipeError> {
+        all_finite("at", &self.at)?;
+        rotation("rotate", &self.rotate)?;
+        Ok(field::Pose { rotation: scene::rotation(self.rotate), translation: DVec3::from_array(self.at) })
+    }
 }
 
 /// See [`Stroke::Twist`].

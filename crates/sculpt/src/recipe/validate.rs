@@ -7,7 +7,6 @@ use super::{
     error::{RecipeError, RecipeProblem, nearest},
     stroke::Stroke,
 };
-use crate::scene;
 
 /// Most triangles of a shape that a recipe makes. Each takes some hundred bytes in all that follows, so that much larger ones
 /// exhaust the memory of an ordinary machine; a smaller limit would refuse what such a machine can do.
@@ -104,12 +103,9 @@ fn keys(keys: &[Key]) -> Check {
     }
     let mut before: Option<DQuat> = None;
     for (index, key) in keys.iter().enumerate() {
-        let path = |name: &str| format!("keys.{index}.{name}");
-        all_finite(&path("at"), &key.at)?;
-        rotation(&path("rotate"), &key.rotate)?;
-        let rotation = scene::rotation(key.rotate);
+        let rotation = key.pose().map_err(|error| error.inside(&index.to_string()).inside("keys"))?.rotation;
         if before.is_some_and(|before| is_half_turn(before, rotation)) {
-            return fail(&path("rotate"), RecipeProblem::HalfTurn);
+            return fail(&format!("keys.{index}.rotate"), RecipeProblem::HalfTurn);
         }
         before = Some(rotation);
     }

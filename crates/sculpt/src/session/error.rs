@@ -41,6 +41,9 @@ pub enum SessionError {
     /// There is no stroke.
     #[error("no stroke is under way; begin one first")]
     NoStroke,
+    /// A pose has no direction to turn about.
+    #[error(transparent)]
+    Pose(#[from] RecipeError),
     /// The tool's way cannot be, from the last pose to this one.
     #[error(transparent)]
     Stroke(#[from] StrokeError),

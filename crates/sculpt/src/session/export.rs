@@ -26,9 +26,8 @@ impl Session {
     /// taken them, to the bits that the log gives elsewhere.
     pub fn export(&self, lock: bool) -> Exported {
         let surface = &self.surface;
-        let count = self.vertex_count();
-        let mut number = vec![NONE; count];
-        let vertices: Vec<u32> = (0..count as u32).filter(|&vertex| self.is_alive(vertex)).collect();
+        let mut number = vec![NONE; self.vertex_count()];
+        let vertices: Vec<u32> = self.vertices().collect();
         for (index, &vertex) in vertices.iter().enumerate() {
             number[vertex as usize] = index as u32;
         }

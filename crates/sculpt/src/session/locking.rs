@@ -4,12 +4,12 @@ use glam::DVec3;
 use isochore_field::lock_part;
 use isochore_mesh::CompensatedSum;
 
-use super::{stroke::ActiveStroke, surface::Surface};
+use super::{LockSkipped, stroke::ActiveStroke, surface::Surface};
 
 /// What the host sees after the lock of a stroke.
 pub(super) struct Locked {
-    /// Longest displacement, model units; none where the lock had nothing to hold.
-    pub(super) max_shift: Option<f64>,
+    /// Longest displacement, model units, or why there was none.
+    pub(super) max_shift: Result<f64, LockSkipped>,
     /// Change of the volume since the stroke began, of what the host sees.
     pub(super) shown_change: f64,
 }
@@ -35,7 +35,7 @@ impl ActiveStroke {
         let flow = |&vertex: &u32| surface.position(vertex) + surface.offsets.get(vertex);
         let mut image: Vec<DVec3> = vertices.iter().map(flow).collect();
         let Some(lock) = lock_part(&rest, &mut image, &triangles, -(excess + change), size) else {
-            return Locked { max_shift: None, shown_change: change };
+            return Locked { max_shift: Err(LockSkipped::NoHold), shown_change: change };
         };
         for ((&vertex, rest), locked) in vertices.iter().zip(rest).zip(image) {
             let position = surface.position(vertex);
@@ -45,7 +45,7 @@ impl ActiveStroke {
         }
         surface.update_tree(&touched);
         surface.write_buffers(&vertices, std::iter::empty());
-        Locked { max_shift: Some(lock.max_shift), shown_change: self.shown_change(surface, &touched) }
+        Locked { max_shift: Ok(lock.max_shift), shown_change: self.shown_change(surface, &touched) }
     }
 
     /// Change of the volume since the stroke began, of what the host sees.

@@ -143,8 +143,7 @@ impl Session {
         for (index, key) in motion.keys.iter().enumerate() {
             let done = monitor.check("replay", index as f64 / motion.keys.len() as f64).map_err(Failure::Cancelled);
             // The key itself is logged again, not what a way through poses would make of it.
-            let done =
-                done.and_then(|()| self.move_to_key(key.clone(), key.pose(), index as f64).map_err(Failure::Session));
+            let done = done.and_then(|()| self.move_to_key(key.clone(), index as f64).map_err(Failure::Session));
             if let Err(error) = done {
                 self.cancel_stroke()?;
                 return Err(error);

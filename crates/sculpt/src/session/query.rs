@@ -51,6 +51,9 @@ impl Session {
 
     /// The vertices within the support of a tool at a pose, which are those that it moves as soon as it moves, in ascending order,
     /// into `vertices`. Masks are not looked at.
+    ///
+    /// Strokes move vertices from where the flow has left them, and so it is there that they count as reached: what the host sees may
+    /// be off by what the lock has added, which [`offsets`](Self::offsets) tells.
     pub fn vertices_in_reach(&self, tool: &SessionTool, pose: &field::Pose, vertices: &mut Vec<u32>) {
         vertices.clear();
         let tool = tool.tool();
@@ -147,6 +150,11 @@ impl Session {
     /// By vertex what the locks of all strokes add to its position, model units: buffers, picks and exports with a lock show the sum.
     pub fn offsets(&self) -> &[DVec3] {
         self.surface.offsets.items()
+    }
+
+    /// The vertices that were not removed, in ascending order: those of an [export](Self::export).
+    pub fn vertices(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.vertex_count() as u32).filter(|&vertex| self.is_alive(vertex))
     }
 
     /// Whether a vertex was not removed.

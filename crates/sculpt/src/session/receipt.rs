@@ -1,5 +1,7 @@
 //! What moves, strokes, undo and redo did.
 
+use std::fmt;
+
 /// What one [`move_to`](super::Session::move_to) did.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MoveReceipt {
@@ -66,15 +68,49 @@ pub struct StrokeReceipt {
     pub evaluations: u64,
     /// What became of the volume; none where the surface is open.
     pub volume: Option<StrokeVolume>,
-    /// Longest displacement by the lock of this stroke, model units; none where it had nothing to hold: the surface is open, the
-    /// session locks none, or the stroke has moved nothing that the volume depends on.
+    /// Longest displacement by the lock of this stroke, model units; none where it was skipped.
     pub lock_max_shift: Option<f64>,
+    /// Why the lock was skipped; none where it acted.
+    pub lock_skipped: Option<LockSkipped>,
     /// Wall time of all moves by stage.
     pub seconds: MoveSeconds,
     /// Bytes that undo holds for this stroke.
     pub undo_bytes: usize,
     /// Strokes that undo forgot, oldest first, to make room for this one.
     pub forgotten_strokes: usize,
+}
+
+/// Why a stroke ended without its lock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LockSkipped {
+    /// The session locks no stroke.
+    Off,
+    /// The surface is open and has no volume.
+    NeedsClosed,
+    /// The stroke has moved nothing that the volume depends on, or too little for a displacement of that to give it back. What is
+    /// missing is left for the lock of the next stroke.
+    NoHold,
+}
+
+impl LockSkipped {
+    /// The name that programs go by: `off`, `needs_closed`, `no_hold`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::NeedsClosed => "needs_closed",
+            Self::NoHold => "no_hold",
+        }
+    }
+}
+
+impl fmt::Display for LockSkipped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Off => "the lock was skipped: the session has none",
+            Self::NeedsClosed => "the lock was skipped: the mesh is open and has no volume",
+            Self::NoHold => "the lock was skipped: nothing moved that the volume depends on",
+        })
+    }
 }
 
 /// Signed changes of the volume inside the flat triangles by one stroke, cubic model units. Their sum is the whole change.

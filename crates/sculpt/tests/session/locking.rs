@@ -1,4 +1,4 @@
-use isochore_sculpt::session::SessionOptions;
+use isochore_sculpt::session::{LockSkipped, SessionOptions, StrokeReceipt};
 
 use super::*;
 
@@ -17,6 +17,7 @@ fn the_host_sees_the_volume_of_the_mesh_as_opened() {
         assert!((locked.mesh.volume() - opened).abs() < 1e-13 * opened, "{}", locked.mesh.volume() - opened);
         assert!((bare.mesh.volume() - opened).abs() > 1e-9 * opened);
         let shift = receipt.lock_max_shift.unwrap();
+        assert_eq!(receipt.lock_skipped, None);
         // Edges of 0.1 at most, some times coarser than the field asks for.
         assert!(shift > 0.0 && shift < 0.1, "{shift}");
         assert!(locked.lock.unwrap().max_shift > 0.0 && bare.lock.is_none());
@@ -52,4 +53,37 @@ fn a_session_without_a_lock_shows_the_flow() {
     // What strokes work on is the same.
     assert_eq!(unlocked.positions(), locked.positions());
     assert_eq!(unlocked.export(true).mesh.positions, locked.export(false).mesh.positions);
+}
+
+#[test]
+fn a_lock_that_is_skipped_says_why() {
+    let end = |session: &mut Session, poses: &[Pose]| -> StrokeReceipt {
+        session.begin_stroke(&brush(), UNREFINED).unwrap();
+        poses.iter().for_each(|pose| assert!(session.move_to(pose, 0.0).is_ok()));
+        let receipt = session.end_stroke().unwrap();
+        assert_eq!(receipt.lock_skipped.is_some(), receipt.lock_max_shift.is_none());
+        receipt
+    };
+    let poses = arc(0.0, 6);
+    let skipped = |session: &mut Session, poses: &[Pose]| end(session, poses).lock_skipped;
+    let unlocked = SessionOptions { lock: false, ..SessionOptions::default() };
+    assert_eq!(skipped(&mut Session::open(icosphere(1.0, 3), unlocked).unwrap(), &poses), Some(LockSkipped::Off));
+    assert_eq!(skipped(&mut ball(), &poses), None);
+    assert_eq!(skipped(&mut ball(), &poses[..1]), Some(LockSkipped::NoHold));
+    let far = [0.0, 1.0].map(|x| Pose::at(DVec3::new(x, 9.0, 0.0)));
+    assert_eq!(skipped(&mut ball(), &far), Some(LockSkipped::NoHold));
+    let mut opened = icosphere(1.0, 3);
+    opened.triangles.pop();
+    assert_eq!(skipped(&mut open(opened), &poses), Some(LockSkipped::NeedsClosed));
+
+    // All that moves is one vertex that no triangle has.
+    let mut loose = icosphere(1.0, 3);
+    loose.positions.push(DVec3::new(5.0, 0.0, 0.0));
+    let mut session = open(loose);
+    let around = [0.0, 0.1].map(|z| Pose::at(DVec3::new(5.0, 0.0, z)));
+    assert_eq!(skipped(&mut session, &around), Some(LockSkipped::NoHold));
+    assert_ne!(session.positions()[642], DVec3::new(5.0, 0.0, 0.0));
+    for reason in [LockSkipped::Off, LockSkipped::NeedsClosed, LockSkipped::NoHold] {
+        assert!(reason.to_string().starts_with("the lock was skipped: "));
+    }
 }

@@ -1,0 +1,123 @@
+//! Options, which JavaScript gives as plain objects.
+
+use js_sys::{JSON, Object};
+use serde::de::DeserializeOwned;
+use wasm_bindgen::prelude::*;
+
+use crate::error::thrown;
+
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = r#"
+/** What a mesh carries. */
+export interface MeshAttributes {
+  /** As many joints for each vertex, row by row. */
+  joints?: ArrayLike<number>;
+  /** A weight for each of these, which is divided by the sum of its row; zero for places that are not used. */
+  weights?: ArrayLike<number>;
+}
+
+/** How a session works. */
+export interface SessionOptions {
+  /** Travel of the tool in one time step, as `integrate.step` of a recipe. */
+  step?: number;
+  /** Bytes that undo and redo may hold; beyond, the oldest strokes are forgotten. */
+  undoBytes?: number;
+  /** How triangles are weighted in vertex normals: by area, unless said otherwise. */
+  normals?: "area" | "angle";
+  /** Whether each stroke ends with the volume of the mesh as opened, by a small displacement of what it has moved; true unless said
+   * otherwise. */
+  lock?: boolean;
+  /** A number for each vertex of the mesh from 0, free, to 1, held: those that are held keep their bits. */
+  weights?: ArrayLike<number>;
+  /** What else a recipe says under `mask`. */
+  mask?: { pins?: object[]; mirror?: object[]; fade?: number };
+}
+
+/** How one stroke works. */
+export interface StrokeOptions {
+  /** Whether edges in the tool's reach are split, collapsed and flipped; true unless said otherwise. */
+  refine?: boolean;
+  /** Edges longer than this are split, model units. */
+  longestEdge?: number;
+  /** No split goes beyond this number of triangles. */
+  maxTriangles?: number;
+  /** Balls in which the triangles stay: x, y, z and radius of each, model units. */
+  keep?: ArrayLike<number>;
+}
+
+/** How a preview looks. */
+export interface PreviewOptions {
+  /** Points along the longest side of the support, 12 unless said otherwise and 64 at most. */
+  perSide?: number;
+  /** Turn where the move begins: axis x, y, z and angle in degrees, absolute. */
+  startRotate?: ArrayLike<number>;
+  /** The same where it ends. */
+  endRotate?: ArrayLike<number>;
+}
+"#;
+
+#[wasm_bindgen]
+unsafe extern "C" {
+    #[wasm_bindgen(extends = Object, typescript_type = "MeshAttributes")]
+    pub type MeshAttributes;
+    #[wasm_bindgen(method, getter)]
+    pub fn joints(this: &MeshAttributes) -> Option<Vec<u32>>;
+    #[wasm_bindgen(method, getter)]
+    pub fn weights(this: &MeshAttributes) -> Option<Vec<f64>>;
+
+    #[wasm_bindgen(extends = Object, typescript_type = "SessionOptions")]
+    pub type SessionOptions;
+    #[wasm_bindgen(method, getter)]
+    pub fn step(this: &SessionOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter, js_name = undoBytes)]
+    pub fn undo_bytes(this: &SessionOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    pub fn normals(this: &SessionOptions) -> Option<String>;
+    #[wasm_bindgen(method, getter)]
+    pub fn lock(this: &SessionOptions) -> Option<bool>;
+    #[wasm_bindgen(method, getter)]
+    pub fn weights(this: &SessionOptions) -> Option<Vec<f64>>;
+    #[wasm_bindgen(method, getter)]
+    pub fn mask(this: &SessionOptions) -> Option<Object>;
+
+    #[wasm_bindgen(extends = Object, typescript_type = "StrokeOptions")]
+    pub type StrokeOptions;
+    #[wasm_bindgen(method, getter)]
+    pub fn refine(this: &StrokeOptions) -> Option<bool>;
+    #[wasm_bindgen(method, getter, js_name = longestEdge)]
+    pub fn longest_edge(this: &StrokeOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter, js_name = maxTriangles)]
+    pub fn max_triangles(this: &StrokeOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    pub fn keep(this: &StrokeOptions) -> Option<Vec<f64>>;
+
+    #[wasm_bindgen(extends = Object, typescript_type = "PreviewOptions")]
+    pub type PreviewOptions;
+    #[wasm_bindgen(method, getter, js_name = perSide)]
+    pub fn per_side(this: &PreviewOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter, js_name = startRotate)]
+    pub fn start_rotate(this: &PreviewOptions) -> Option<Vec<f64>>;
+    #[wasm_bindgen(method, getter, js_name = endRotate)]
+    pub fn end_rotate(this: &PreviewOptions) -> Option<Vec<f64>>;
+}
+
+/// The options, given or not, which have no other keys than these.
+pub(crate) fn options<T: JsCast>(given: Option<T>, known: &[&str]) -> Result<T, JsError> {
+    let Some(given) = given else { return Ok(Object::new().unchecked_into()) };
+    let unknown = |key: &JsValue| key.as_string().filter(|key| !known.contains(&key.as_str()));
+    match Object::keys::<JsValue>(given.unchecked_ref()).iter().find_map(|key| unknown(&key)) {
+        Some(key) => Err(thrown(format!("unknown option `{key}`; known here: {}", known.join(", ")))),
+        None => Ok(given),
+    }
+}
+
+/// What a recipe says under the key `place`, as an object.
+pub(crate) fn keys<T: DeserializeOwned>(place: &str, data: &JsValue) -> Result<T, JsError> {
+    let text = JSON::stringify(data).ok().and_then(|text| text.as_string()).unwrap_or_default();
+    serde_json::from_str(&text).map_err(|error| thrown(format!("{place}: {error}")))
+}
+
+/// Just as many numbers as are wanted.
+pub(crate) fn numbers<const N: usize>(values: &[f64]) -> Result<[f64; N], JsError> {
+    values.try_into().map_err(|_| thrown(format!("{N} numbers are wanted, not {}", values.len())))
+}
