@@ -1,3 +1,4 @@
+use glam::Vec3;
 use isochore_mesh::io::Format;
 use isochore_mesh::{TriMesh, io, primitives};
 
@@ -173,6 +174,16 @@ fn order_and_partial_attributes_survive() {
     let colors: Vec<[f64; 4]> = mesh.vertex.colors.iter().map(|color| color.to_array()).collect();
     assert_eq!(colors[..3], [[1.0; 4], [0.5, 0.0, 0.0, 0.25], [1.0; 4]]);
     assert_eq!(colors.len(), 6);
+}
+
+#[test]
+fn attributes_may_be_counted_back() {
+    let mesh = parse_obj(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.5 0\nvt 0.25 0\nvn 0 0 1\nf -3/-2/-1\t-2/-1/-1 -1/-2/-1\nv 0 0 1\nf 4//1 -4//-1  03//1\n",
+    );
+    assert_eq!(mesh.triangles, [[0, 1, 2], [3, 0, 2]]);
+    assert_eq!(mesh.corner.uvs[0][0].map(|uv| uv.x), [0.5, 0.25, 0.5]);
+    assert_eq!(mesh.corner.normals, [[Vec3::Z; 3]; 2]);
 }
 
 /// Zero, too far back, and longer than any computer word.

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::fault::check_face;
 use super::statement::{Statement, Statements};
 use crate::io::LineProblem;
-use crate::io::text::{Words, push_index, read_numbers, text};
+use crate::io::text::{Words, parse_integer, read_numbers, text};
 
 /// Bytes that are made ready at a time.
 const BUFFER: usize = 1 << 15;
@@ -16,8 +16,8 @@ const BUFFER: usize = 1 << 15;
 /// The statements `v`, `vt`, `vn` and `f` in the order of the file, a line each, without comments; the others are of no
 /// concern to the library, or taken for something else by it.
 ///
-/// It numbers the vertices of every object anew, in the order of their use, and tells no more about them than their
-/// position and color. So each vertex has its number in the file for a color.
+/// It numbers the vertices of every object anew, in the order of their use, and does not tell which they were. So the corners
+/// of faces are kept.
 pub(super) struct Lines<'a> {
     statements: Statements<'a>,
     buffer: Vec<u8>,
@@ -33,6 +33,8 @@ pub(super) struct Lines<'a> {
 pub(super) struct Kept {
     /// Numbers of vertices, texture coordinates and normals.
     pub(super) counts: [usize; 3],
+    /// Vertices of the corners of all faces, by their numbers in the file.
+    pub(super) corners: Vec<u32>,
     /// As many as there are vertices, or none.
     pub(super) colors: Vec<DVec4>,
     /// Kinds of the faces in their order, each with how many of it follow each other.
@@ -95,10 +97,7 @@ impl<'a> Lines<'a> {
 
     fn push_vertex(&mut self, statement: &[u8]) -> Result<(), LineProblem> {
         let (position, color) = split_vertex(statement)?;
-        self.buffer.extend_from_slice(position);
-        self.buffer.push(b' ');
-        push_index(&mut self.buffer, self.kept.counts[0] as u32);
-        self.buffer.extend_from_slice(b" 0 0\n");
+        self.push_line(position, b"\n");
         self.kept.push_color(color)?;
         self.kept.counts[0] += 1;
         Ok(())
@@ -151,13 +150,16 @@ impl Kept {
         if self.materials.is_empty() {
             self.use_material("");
         }
-        let attributes = if memchr::memchr(b'/', words.rest).is_some() { Attributes::of(words.rest) } else { NONE };
-        if attributes.are_unusual {
-            // Whatever is named may come later in the file.
-            check_face(words, self.counts, [usize::MAX; 3])?;
-        }
-        let Attributes { has_uvs, has_normals, is_uneven, .. } = attributes;
-        self.has_uneven_faces |= is_uneven;
+        let start = self.corners.len();
+        let [vertices, uvs, normals] = match read_usual_corners(words.rest, &mut self.corners) {
+            Some(found) => found,
+            None => {
+                self.corners.truncate(start);
+                read_corners(words, self.counts, &mut self.corners)?
+            }
+        };
+        let [has_uvs, has_normals] = [uvs, normals].map(|found| found == vertices);
+        self.has_uneven_faces |= (!has_uvs && uvs > 0) || (!has_normals && normals > 0);
         let kind = FaceKind { material: self.material, has_uvs, has_normals };
         match self.runs.last_mut() {
             Some((known, faces)) if *known == kind => *faces += 1,
@@ -179,53 +181,54 @@ impl Kept {
     }
 }
 
-/// What the corners of a face name beside vertices.
-struct Attributes {
-    has_uvs: bool,
-    has_normals: bool,
-    is_uneven: bool,
-    /// True for indices on which the library's arithmetic may overflow (negative or very long ones), and for zero, which it
-    /// takes for none.
-    are_unusual: bool,
+/// Most digits of an index in a usual face: one more, and it may not fit into 32 bits.
+const MOST_DIGITS: usize = 9;
+
+/// How many corners of a face have each of the three indices, of which the vertices are added. None for faces that take a closer
+/// look: other spaces, indices with a sign, of zero or very long ones, and whatever is no corner.
+fn read_usual_corners(mut rest: &[u8], vertices: &mut Vec<u32>) -> Option<[usize; 3]> {
+    let mut found = [0; 3];
+    while let [b' ', corner @ ..] = rest {
+        let vertex;
+        (vertex, rest) = split_number(corner)?;
+        vertices.push(vertex.checked_sub(1)?);
+        found[0] += 1;
+        for found in &mut found[1..] {
+            let [b'/', field @ ..] = rest else { break };
+            let number;
+            (number, rest) = split_number(field)?;
+            *found += usize::from(number > 0);
+        }
+    }
+    rest.is_empty().then_some(found)
 }
 
-const NONE: Attributes = Attributes { has_uvs: false, has_normals: false, is_uneven: false, are_unusual: false };
-
-/// Digits of the largest index that there can be.
-const MOST_DIGITS: usize = 10;
-
-impl Attributes {
-    fn of(corners: &[u8]) -> Self {
-        // How many corners have each of the three indices.
-        let mut found = [0_usize; 3];
-        let (mut field, mut digits) = (0, 0);
-        let mut are_unusual = false;
-        for &byte in corners {
-            match byte {
-                b'0'..=b'9' => {
-                    if digits == 0 {
-                        found[field] += 1;
-                        are_unusual |= byte == b'0';
-                    }
-                    digits += 1;
-                    are_unusual |= digits > MOST_DIGITS;
-                }
-                b'/' => {
-                    field = (field + 1) % 3;
-                    are_unusual |= field == 0;
-                    digits = 0;
-                }
-                b' ' => (field, digits) = (0, 0),
-                _ => {
-                    are_unusual |= byte == b'-';
-                    (field, digits) = (0, 0);
-                }
-            }
+/// A number in front of other bytes, zero where there are no digits.
+fn split_number(bytes: &[u8]) -> Option<(u32, &[u8])> {
+    let (mut number, mut length) = (0, 0);
+    while let Some(digit @ 0..=9) = bytes.get(length).map(|byte| byte.wrapping_sub(b'0')) {
+        if length == MOST_DIGITS || (number == 0 && digit == 0) {
+            return None;
         }
-        let [vertices, uvs, normals] = found;
-        let [has_uvs, has_normals] = [uvs, normals].map(|found| found == vertices);
-        Self { has_uvs, has_normals, is_uneven: (!has_uvs && uvs > 0) || (!has_normals && normals > 0), are_unusual }
+        number = 10 * number + u32::from(digit);
+        length += 1;
     }
+    Some((number, &bytes[length..]))
+}
+
+/// The same of any face, of whose indices negative ones count back from `counts`.
+fn read_corners(words: Words<'_>, counts: [usize; 3], vertices: &mut Vec<u32>) -> Result<[usize; 3], LineProblem> {
+    // Whatever is named may come later in the file. On what is refused here, the library's arithmetic may overflow.
+    check_face(words.clone(), counts, [usize::MAX; 3])?;
+    let mut found = [0; 3];
+    for word in words {
+        let indices = word.split(|&byte| byte == b'/').map(parse_integer);
+        if let Some(vertex) = indices.clone().next().flatten() {
+            vertices.push(if vertex < 0 { counts[0] as i64 + vertex } else { vertex - 1 } as u32);
+        }
+        found.iter_mut().zip(indices).for_each(|(found, index)| *found += usize::from(index.is_some()));
+    }
+    Ok(found)
 }
 
 /// A vertex up to its third number, and what comes after it.

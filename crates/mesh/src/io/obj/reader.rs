@@ -42,7 +42,7 @@ fn read_objects(bytes: &[u8], object_size: usize) -> Result<TriMesh, tobj::LoadE
     if !kept.colors.is_empty() {
         kept.colors.resize(kept.counts[0], DVec4::ONE);
     }
-    let positions = positions(bytes, &objects, kept.counts[0])?;
+    let positions = positions(bytes, &objects, &kept)?;
     if !is_sound(&objects, &positions) || (kept.has_uneven_faces && check_lines(bytes).is_err()) {
         return Err(tobj::LoadError::GenericFailure);
     }
@@ -55,17 +55,16 @@ fn load(lines: &mut impl BufRead) -> Result<Vec<tobj::Mesh>, tobj::LoadError> {
     Ok(models.into_iter().map(|model| model.mesh).collect())
 }
 
-/// The numbers in the file of an object's vertices.
-fn numbers(object: &tobj::Mesh) -> impl Iterator<Item = u32> {
-    object.vertex_color.as_chunks::<3>().0.iter().map(|color| color[0] as u32)
-}
-
 /// All positions in the order of the file.
-fn positions(bytes: &[u8], objects: &[tobj::Mesh], count: usize) -> Result<Vec<DVec3>, tobj::LoadError> {
+fn positions(bytes: &[u8], objects: &[tobj::Mesh], kept: &Kept) -> Result<Vec<DVec3>, tobj::LoadError> {
+    let count = kept.counts[0];
     let mut positions = vec![DVec3::NAN; count];
+    let mut corners = kept.corners.iter();
     for object in objects {
-        for (number, &position) in numbers(object).zip(object.positions.as_chunks().0) {
-            positions[number as usize] = DVec3::from_array(position);
+        let known = object.positions.as_chunks().0;
+        for (&index, &vertex) in object.indices.iter().zip(&mut corners) {
+            let position = positions.get_mut(vertex as usize).ok_or(tobj::LoadError::FaceVertexOutOfBounds)?;
+            *position = DVec3::from_array(known[index as usize]);
         }
     }
     let is_missing = |&vertex: &u32| positions[vertex as usize].is_nan();
@@ -119,8 +118,8 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
     mesh.corner.normals.reserve_exact(if has_normals { triangles } else { 0 });
     let mut polygon = Vec::new();
     let mut kinds = kept.runs.iter().flat_map(|&(kind, faces)| repeat_n(kind, faces));
+    let mut vertices = &kept.corners[..];
     for object in objects {
-        let numbers: Vec<u32> = numbers(object).collect();
         let uv = |corner: usize| DVec2::from_slice(&object.texcoords[2 * object.texcoord_indices[corner] as usize..]);
         let normal =
             |corner: usize| DVec3::from_slice(&object.normals[3 * object.normal_indices[corner] as usize..]).as_vec3();
@@ -130,10 +129,10 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
             if lacks_uvs || (kind.has_normals && object.normal_indices.is_empty()) {
                 return None;
             }
-            let corners = &object.indices[start..start + size];
-            let vertex = |corner: usize| numbers[corners[corner] as usize];
+            let (corners, others) = vertices.split_at_checked(size)?;
+            vertices = others;
             let mut push = |triangle: [usize; 3]| {
-                let vertices = triangle.map(vertex);
+                let vertices = triangle.map(|corner| corners[corner]);
                 mesh.triangles.push(vertices);
                 if has_materials {
                     mesh.triangle_materials.push(kind.material);
@@ -152,7 +151,7 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
                 push([0, 1, 2]);
             } else {
                 polygon.clear();
-                polygon.extend((0..size).map(|corner| positions[vertex(corner) as usize]));
+                polygon.extend(corners.iter().map(|&vertex| positions[vertex as usize]));
                 triangulate(&polygon, push);
             }
             start += size;
