@@ -114,7 +114,7 @@ pub enum Buffer {
     Positions = 0,
     /// Normals, by render vertex.
     Normals = 1,
-    /// Texture coordinates and colors, by render vertex.
+    /// Texture coordinates, colors and origins, by render vertex.
     Attributes = 2,
     /// Indices, by triangle.
     Indices = 3,

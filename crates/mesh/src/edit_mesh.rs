@@ -1,8 +1,9 @@
 //! The topology of a surface that is edited in place: splits, collapses and flips of edges, each in local time.
 //!
 //! A corner table (J. Rossignac, *Edgebreaker*, 1999, calls it so): half-edge `3 t + k` runs from vertex `k` of triangle `t` to
-//! vertex `k + 1` (modulo three) and knows its twin on the other side. A vertex knows one half-edge that leaves it. Indices never
-//! change their meaning: what is removed leaves a hole, and what is new is appended.
+//! vertex `k + 1` (modulo three) and knows its twin on the other side. A vertex knows one half-edge that leaves it. What is removed
+//! leaves a hole, and what is new is appended, or takes the place of what was removed before edits began to be recorded. Vertices that
+//! there were at first keep their places for good.
 
 mod collapse;
 mod fan;
@@ -11,7 +12,7 @@ mod split;
 #[cfg(test)]
 mod tests;
 
-use crate::{Delta, Journaled, Topology};
+use crate::{Delta, FreeSlots, Journaled, Topology};
 
 pub use collapse::Collapsed;
 pub use fan::Fan;
@@ -27,6 +28,8 @@ pub struct EditMesh {
     /// By vertex a half-edge that leaves it: at the boundary the one without a twin. [`NONE`] for a vertex without triangles.
     leaving: Journaled<u32>,
     alive: usize,
+    free_triangles: FreeSlots,
+    free_vertices: FreeSlots,
 }
 
 /// A triangle and what lies beyond its edges.
@@ -147,7 +150,13 @@ impl EditMesh {
             }
         }
         let alive = records.len();
-        let mesh = Self { triangles: Journaled::new(records), leaving: Journaled::new(leaving), alive };
+        let mesh = Self {
+            triangles: Journaled::new(records),
+            leaving: Journaled::new(leaving),
+            alive,
+            free_triangles: FreeSlots::default(),
+            free_vertices: FreeSlots::new(vertices as u32),
+        };
         for (vertex, corners) in (0_u32..).zip(corners) {
             if mesh.fan(vertex).count() != corners as usize {
                 return Err(EditMeshError::NonManifoldVertex { vertex });
@@ -226,7 +235,9 @@ impl EditMesh {
 
     /// Ends recording; `alive` is what [`begin`](Self::begin) returned.
     pub fn finish(&mut self, alive: usize) -> EditDelta {
-        EditDelta { triangles: self.triangles.finish(), leaving: self.leaving.finish(), alive }
+        let delta = EditDelta { triangles: self.triangles.finish(), leaving: self.leaving.finish(), alive };
+        self.follow(&delta);
+        delta
     }
 
     /// Takes the surface to the other end of `delta`; see [`Journaled::swap`].
@@ -237,6 +248,26 @@ impl EditMesh {
         self.triangles.swap(&mut delta.triangles);
         self.leaving.swap(&mut delta.leaving);
         std::mem::swap(&mut self.alive, &mut delta.alive);
+        self.follow(delta);
+    }
+
+    fn follow(&mut self, delta: &EditDelta) {
+        self.free_triangles.follow(&self.triangles, &delta.triangles, |triangle| !triangle.is_alive());
+        self.free_vertices.follow(&self.leaving, &delta.leaving, |&leaving| leaving == NONE);
+    }
+
+    fn add_triangle(&mut self, vertices: [u32; 3]) -> u32 {
+        let triangle = self.free_triangles.take(self.triangles.items().len());
+        self.triangles.put(triangle, EditTriangle { vertices, twins: [NONE; 3] });
+        self.alive += 1;
+        triangle
+    }
+
+    /// Adds a vertex without triangles.
+    fn add_vertex(&mut self) -> u32 {
+        let vertex = self.free_vertices.take(self.leaving.items().len());
+        self.leaving.put(vertex, NONE);
+        vertex
     }
 
     fn edit(&mut self, triangle: u32, change: impl FnOnce(&mut EditTriangle)) {

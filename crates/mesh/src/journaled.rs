@@ -1,5 +1,9 @@
 //! An array that remembers what it held, so that a stretch of edits can be undone and redone to the bit.
 
+mod free_slots;
+
+pub use free_slots::FreeSlots;
+
 /// An array whose edits can be recorded. Undo costs time and memory in proportion to what was edited, never to the length.
 #[derive(Debug, Clone, Default)]
 pub struct Journaled<T> {
@@ -65,6 +69,18 @@ impl<T: Copy> Journaled<T> {
         self.items.push(item);
         self.slots.push(0);
         self.items.len() as u32 - 1
+    }
+
+    /// Replaces item `index`, or appends it where that is the number of items.
+    ///
+    /// # Panics
+    /// If there is none, and none can be appended there.
+    pub fn put(&mut self, index: u32, item: T) {
+        if index as usize == self.items.len() {
+            self.push(item);
+        } else {
+            self.set(index, item);
+        }
     }
 
     /// What item `index` was when recording began; none for items appended since.

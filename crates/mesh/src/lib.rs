@@ -50,7 +50,7 @@ pub use edit_mesh::{
     previous as previous_half_edge,
 };
 pub use grid_mesh::GridMesh;
-pub use journaled::{Delta, Journaled};
+pub use journaled::{Delta, FreeSlots, Journaled};
 pub use measure::{Components, EdgeLengths, VolumeFrame, signed_volume};
 pub use mesh_distance::MeshDistance;
 pub use monitor::{Cancelled, Monitor, Silent};

@@ -29,7 +29,7 @@ const NONE: u32 = u32::MAX;
 #[derive(Debug, Clone)]
 pub struct SurfaceTree {
     nodes: Vec<Node>,
-    /// By triangle the leaf that holds it.
+    /// By triangle the leaf that holds it; [`NONE`] for one that is not there.
     leaf_of: Vec<u32>,
     /// By triangle the next one in its leaf.
     following: Vec<u32>,
@@ -146,26 +146,23 @@ impl SurfaceTree {
         self.is_due.reserve(nodes);
     }
 
-    /// Makes the number of triangles `count`: takes in the ones that are new, and lets go those beyond it. Where `near` knows
-    /// neighbors of a new triangle, numbers out of range among them, its place is found without a search. `bounds` tells the box of
-    /// a triangle, empty where it is not there.
-    pub fn resize(&mut self, count: usize, bounds: &impl Fn(u32) -> Aabb, near: &impl Fn(u32) -> [u32; 3]) {
-        for triangle in count..self.leaf_of.len() {
-            let leaf = self.leaf_of[triangle];
-            self.unlink(triangle as u32);
+    /// Lets go a triangle that is not there any more.
+    fn remove(&mut self, triangle: u32) {
+        let leaf = self.leaf_of[triangle as usize];
+        if leaf != NONE {
             self.make_due(leaf);
+            self.unlink(triangle);
         }
-        let known = self.leaf_of.len().min(count);
-        self.leaf_of.resize(count, NONE);
-        self.following.resize(count, NONE);
-        for triangle in known as u32..count as u32 {
-            let leaf_of = |&neighbor: &u32| self.leaf_of.get(neighbor as usize).copied().filter(|&leaf| leaf != NONE);
-            let leaf = near(triangle).iter().find_map(leaf_of).unwrap_or_else(|| self.descend(triangle, bounds));
-            self.link(triangle, leaf);
-            self.make_due(leaf);
-            if self.nodes[leaf as usize].count >= FULL_LEAF {
-                self.cut(leaf, bounds);
-            }
+    }
+
+    /// Takes in a triangle beside those of its neighbors that are there, or where a search finds its place.
+    fn insert(&mut self, triangle: u32, neighbors: [u32; 3], bounds: &impl Fn(u32) -> Aabb) {
+        let leaf_of = |&neighbor: &u32| self.leaf_of.get(neighbor as usize).copied().filter(|&leaf| leaf != NONE);
+        let leaf = neighbors.iter().find_map(leaf_of).unwrap_or_else(|| self.descend(triangle, bounds));
+        self.link(triangle, leaf);
+        self.make_due(leaf);
+        if self.nodes[leaf as usize].count >= FULL_LEAF {
+            self.cut(leaf, bounds);
         }
     }
 
@@ -221,11 +218,27 @@ impl SurfaceTree {
         }
     }
 
-    /// Makes the boxes anew that hold any of the triangles `changed`, which have moved, gone, or come back, and those that
-    /// [`resize`](Self::resize) left for this call.
-    pub fn update(&mut self, changed: &[u32], bounds: &(impl Fn(u32) -> Aabb + Sync)) {
-        for &triangle in changed {
-            self.make_due(self.leaf_of[triangle as usize]);
+    /// Makes the number of triangles `count`, and follows those of the triangles `changed` that have moved, gone, or come back; those
+    /// that are new need not be among them. `bounds` tells the box of a triangle. `near` gives nothing for one that is not there; where
+    /// it knows neighbors of one that is, numbers out of range among them, its place is found without a search.
+    pub fn update(
+        &mut self,
+        count: usize,
+        changed: &[u32],
+        bounds: &(impl Fn(u32) -> Aabb + Sync),
+        near: &impl Fn(u32) -> Option<[u32; 3]>,
+    ) {
+        let known = self.leaf_of.len().min(count);
+        (count..self.leaf_of.len()).for_each(|triangle| self.remove(triangle as u32));
+        self.leaf_of.resize(count, NONE);
+        self.following.resize(count, NONE);
+        let changed = changed.iter().copied().filter(|&triangle| (triangle as usize) < known);
+        for triangle in changed.chain(known as u32..count as u32) {
+            match (near(triangle), self.leaf_of[triangle as usize]) {
+                (None, _) => self.remove(triangle),
+                (Some(neighbors), NONE) => self.insert(triangle, neighbors, bounds),
+                (Some(_), leaf) => self.make_due(leaf),
+            }
         }
         let mut due = std::mem::take(&mut self.due);
         let (leaves, mut branches): (Vec<u32>, Vec<u32>) =

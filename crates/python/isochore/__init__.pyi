@@ -196,7 +196,8 @@ class Tool:
 class Session:
     """A mesh that strokes deform one after the other, at the pace of a frame, with undo and redo.
 
-    A vertex keeps its number for good: first come those of the mesh as opened, then inserted ones. The buffers hold render vertices: a
+    First come the vertices of the mesh as opened, which keep their numbers, then inserted ones. Where one of these was removed, a later
+    stroke may give its number to another. The buffers hold render vertices: a
     vertex as the triangles on one side of a seam see it. Render vertex i is vertex i of the mesh as opened as long as there are that
     many.
 
@@ -298,7 +299,7 @@ class Session:
     def take_changes(self) -> dict[str, Any]:
         """What has changed in the buffers since the last call, at first everything: pairs (start, end) of rows by buffer.
 
-        `attributes` stands for UVs and colors. Give copies the buffers' lengths first, then copy the rows.
+        `attributes` stands for UVs, colors and origins. Give copies the buffers' lengths first, then copy the rows.
         """
 
     def pick(self, origin: ArrayLike, direction: ArrayLike) -> dict[str, Any] | None:
@@ -348,7 +349,7 @@ class Session:
         """
 
     def vertices_of_render_vertices(self) -> NDArray[np.uint32]:
-        """Number (R,) of the vertex of each render vertex."""
+        """Number (R,) of the vertex of each render vertex; 2**32 - 1 where it was removed."""
 
 class Result(NamedTuple):
     """What became of a recipe's target."""

@@ -6,7 +6,8 @@
 //!   [`move_to`](Session::move_to) in between carries the tool along a screw from the last pose to the next, so that a fast stroke
 //!   leaves no separate dabs. All work is in proportion to what the tool touches, whatever the size of the mesh.
 //! - A *vertex* is a point of the surface. Vertices of the mesh as opened keep their numbers and go exactly where the flow takes
-//!   them; inserted ones follow in order, and numbers never change their meaning.
+//!   them; inserted ones follow. A number changes its meaning in one case: where a collapse removed an inserted vertex, a later
+//!   stroke may give its number to another. So it is with triangles, and buffers are as long as strokes need, not their history.
 //! - A *render vertex* is a vertex as the triangles on one side of a seam see it: what [buffers](Session::buffers) hold.
 //! - The *origin* of a render vertex is the point of the mesh as opened that it takes its attributes from.
 //! - The *log* is a [recipe](crate::Recipe) of all strokes, which can be [replayed](crate::replay) on any mesh or point set.
@@ -44,6 +45,7 @@ mod editing;
 mod error;
 mod export;
 mod history;
+mod inserted;
 mod locking;
 mod log;
 mod marks;
@@ -219,7 +221,8 @@ impl Session {
         if let [first, .., last] = stroke.times[..] {
             receipt.duration = last - first;
         }
-        receipt.touched_vertices = self.surface.positions.edited().count();
+        let inserted = &self.surface.inserted;
+        receipt.touched_vertices = self.surface.positions.edited().filter(|&vertex| !inserted.contains(vertex)).count();
         receipt.volume = self.opened_volume.map(|_| stroke.volume(&self.surface));
         let locked = self.lock(&stroke);
         (receipt.lock_max_shift, receipt.lock_skipped) = (locked.max_shift.ok(), locked.max_shift.err());

@@ -212,7 +212,7 @@ impl Changes {
         pairs(&self.changes.normals)
     }
 
-    /// Of texture coordinates and colors.
+    /// Of texture coordinates, colors and origins.
     #[wasm_bindgen(getter)]
     pub fn attributes(&self) -> Vec<u32> {
         pairs(&self.changes.attributes)

@@ -41,8 +41,8 @@ pub struct Arrow {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Origin {
-    /// The vertex that it shows. The first ones are those of the mesh as opened, inserted ones follow; numbers never change their
-    /// meaning.
+    /// The vertex that it shows; `UINT32_MAX` where that was removed. The first ones are those of the mesh as opened; inserted ones
+    /// follow, and may take the numbers of others that an earlier stroke has removed.
     pub vertex: u32,
     /// The triangle of the mesh as opened that it takes its attributes from; `UINT32_MAX` for a vertex without triangles.
     pub triangle: u32,

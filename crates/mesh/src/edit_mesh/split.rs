@@ -1,4 +1,4 @@
-use super::{EditMesh, EditTriangle, next, previous};
+use super::{EditMesh, next, previous};
 
 /// What the split of an edge made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,10 +22,9 @@ impl EditMesh {
         let twin = self.twin(half_edge);
         let (near, side) = (half_edge / 3, half_edge as usize % 3);
         let (end, apex) = (self.end(half_edge), self.start(previous(half_edge)));
-        let vertex = self.leaving.push(super::NONE);
+        let vertex = self.add_vertex();
         let beyond = self.twin(next(half_edge));
-        let added = self.triangles.push(EditTriangle { vertices: [vertex, end, apex], twins: [super::NONE; 3] });
-        self.alive += 1;
+        let added = self.add_triangle([vertex, end, apex]);
         self.edit(near, |record| record.vertices[(side + 1) % 3] = vertex);
         self.join(3 * added + 1, beyond);
         self.join(next(half_edge), 3 * added + 2);
@@ -39,9 +38,7 @@ impl EditMesh {
         let (far, far_side) = (twin / 3, twin as usize % 3);
         let across = previous(twin);
         let (far_apex, beyond) = (self.start(across), self.twin(across));
-        let far_added =
-            self.triangles.push(EditTriangle { vertices: [end, vertex, far_apex], twins: [super::NONE; 3] });
-        self.alive += 1;
+        let far_added = self.add_triangle([end, vertex, far_apex]);
         self.edit(far, |record| record.vertices[far_side] = vertex);
         self.join(3 * far_added, 3 * added);
         self.join(3 * far_added + 2, beyond);

@@ -50,6 +50,26 @@ fn assert_sound(mesh: &EditMesh) {
     }
 }
 
+/// All that edits depend on.
+#[derive(Debug, PartialEq)]
+struct State {
+    triangles: Vec<EditTriangle>,
+    leaving: Vec<u32>,
+    alive: usize,
+    free: [FreeSlots; 2],
+}
+
+impl State {
+    fn of(mesh: &EditMesh) -> Self {
+        Self {
+            triangles: mesh.triangles().to_vec(),
+            leaving: mesh.leaving.items().to_vec(),
+            alive: mesh.alive(),
+            free: [mesh.free_triangles.clone(), mesh.free_vertices.clone()],
+        }
+    }
+}
+
 /// One edit chosen by two numbers; returns the change of the number of triangles, if it was allowed.
 fn edit(mesh: &mut EditMesh, kind: u8, pick: u32) -> Option<isize> {
     let half_edge = pick % (3 * mesh.triangles().len() as u32);
@@ -74,27 +94,33 @@ proptest! {
     #[test]
     fn edits_leave_a_sound_surface_and_can_be_undone(
         closed in any::<bool>(),
-        edits in prop::collection::vec((any::<u8>(), any::<u32>()), 1..80),
+        stretches in prop::collection::vec(prop::collection::vec((any::<u8>(), any::<u32>()), 1..60), 1..5),
     ) {
         let mesh = if closed { icosphere(1.0, 1) } else { square(4) };
         let mut edited = edit_mesh(&mesh);
-        let before = edited.clone();
-        let alive = edited.begin();
-        let mut expected = alive as isize;
-        for (kind, pick) in edits {
-            expected += edit(&mut edited, kind, pick).unwrap_or(0);
-            prop_assert_eq!(edited.alive() as isize, expected);
+        let mut states = vec![State::of(&edited)];
+        let mut deltas = Vec::new();
+        for edits in &stretches {
+            let alive = edited.begin();
+            let mut expected = alive as isize;
+            for &(kind, pick) in edits {
+                expected += edit(&mut edited, kind, pick).unwrap_or(0);
+                prop_assert_eq!(edited.alive() as isize, expected);
+            }
+            deltas.push(edited.finish(alive));
+            assert_sound(&edited);
+            states.push(State::of(&edited));
         }
-        assert_sound(&edited);
-        let after = (edited.triangles().to_vec(), edited.alive());
-        let mut delta = edited.finish(alive);
-        edited.swap(&mut delta);
-        prop_assert_eq!(edited.triangles(), before.triangles());
-        prop_assert_eq!(edited.alive(), before.alive());
-        assert_sound(&edited);
-        edited.swap(&mut delta);
-        prop_assert_eq!((edited.triangles().to_vec(), edited.alive()), after);
-        assert_sound(&edited);
+        for (delta, state) in deltas.iter_mut().zip(&states).rev() {
+            edited.swap(delta);
+            prop_assert_eq!(&State::of(&edited), state);
+            assert_sound(&edited);
+        }
+        for (delta, state) in deltas.iter_mut().zip(&states[1..]) {
+            edited.swap(delta);
+            prop_assert_eq!(&State::of(&edited), state);
+            assert_sound(&edited);
+        }
     }
 }
 
@@ -110,6 +136,38 @@ fn a_split_keeps_the_corner_numbers_it_promises() {
     let far = split.far.unwrap();
     assert_eq!(corners(far[1]), [end, split.vertex, apexes[1]]);
     assert!(corners(split.near[0]).contains(&start) && corners(far[0]).contains(&start));
+}
+
+#[test]
+fn places_are_taken_anew_once_the_edits_that_freed_them_are_recorded() {
+    let mut mesh = edit_mesh(&icosphere(1.0, 1));
+    let (vertices, triangles) = (mesh.vertex_count(), mesh.triangles().len());
+    let record = |mesh: &mut EditMesh, edits: &dyn Fn(&mut EditMesh)| {
+        let alive = mesh.begin();
+        edits(mesh);
+        mesh.finish(alive)
+    };
+    let collapse = |mesh: &mut EditMesh, vertex: u32| {
+        let way = mesh.fan(vertex).find(|&half_edge| mesh.can_collapse(half_edge)).unwrap();
+        mesh.collapse(way).triangles
+    };
+    // A vertex that was there at first leaves its triangles to others, but not its number.
+    record(&mut mesh, &|mesh| {
+        let gone = collapse(mesh, 7);
+        let split = mesh.split(mesh.leaving(0));
+        assert!(!gone.contains(&split.near[1]) && split.vertex as usize == vertices);
+    });
+    record(&mut mesh, &|mesh| assert_eq!(collapse(mesh, vertices as u32).len(), 2));
+    let mut delta = record(&mut mesh, &|mesh| {
+        let split = mesh.split(mesh.leaving(0));
+        assert_eq!(split.vertex as usize, vertices);
+        assert!((split.near[1] as usize) < triangles && (split.far.unwrap()[1] as usize) < triangles);
+    });
+    assert_eq!((mesh.vertex_count(), mesh.triangles().len()), (vertices + 1, triangles + 2));
+    // Undone, the places are free again, and the next to be taken.
+    mesh.swap(&mut delta);
+    record(&mut mesh, &|mesh| assert_eq!(mesh.split(mesh.leaving(5)).vertex as usize, vertices));
+    assert_sound(&mesh);
 }
 
 #[test]

@@ -39,8 +39,9 @@ impl Slow<'_> {
         let mut all: Vec<(f64, u32)> = (0..self.1.len() as u32)
             .filter_map(|triangle| {
                 let mut single = SurfaceTree::new(&[], &[]).unwrap();
-                (single.leaf_of, single.following) = (vec![NONE; self.1.len()], vec![NONE; self.1.len()]);
-                single.link(triangle, 0);
+                single.update(self.1.len(), &[], &|triangle| self.bounds(triangle), &|other| {
+                    (other == triangle).then_some([NONE; 3])
+                });
                 single.cast_ray(point, direction, &corners).map(|hit| (hit.distance, triangle))
             })
             .collect();
@@ -75,18 +76,28 @@ proptest! {
             let bounds = |triangle: u32| Aabb::of(rest.corners(triangle as usize));
             // Half of them beside another, the rest by a search.
             let near = |triangle: u32| if triangle.is_multiple_of(2) { [NONE, triangle.wrapping_sub(1), triangle] } else { [NONE; 3] };
-            tree.resize(rest.triangles.len(), &bounds, &near);
-            tree.update(&[], &bounds);
+            tree.update(rest.triangles.len(), &[], &bounds, &|triangle| Some(near(triangle)));
         }
         let mesh = moved(&rest, seed);
         gone.into_iter().for_each(|triangle| alive[triangle] = false);
         let slow = Slow(&mesh, &alive);
         let changed: Vec<u32> = (0..rest.triangles.len() as u32).collect();
-        tree.update(&changed, &|triangle| slow.bounds(triangle));
+        let beside = |triangle: u32| alive[triangle as usize].then_some([NONE, triangle + 1, NONE]);
+        tree.update(rest.triangles.len(), &changed, &|triangle| slow.bounds(triangle), &beside);
         slow.assert_agrees(&tree, point.into(), direction.into());
+        // What is gone comes back somewhere else, and all the rest goes.
+        let gone: Vec<bool> = alive.iter().map(|alive| !alive).collect();
+        let elsewhere = moved(&rest, seed + 1.0);
+        let back = Slow(&elsewhere, &gone);
+        let mut other = tree.clone();
+        let beside = |triangle: u32| gone[triangle as usize].then_some([NONE; 3]);
+        other.update(rest.triangles.len(), &changed, &|triangle| back.bounds(triangle), &beside);
+        back.assert_agrees(&other, point.into(), direction.into());
+        // A tree without what is gone has no larger boxes than one that never knew it.
+        prop_assert_eq!(other.nodes[0].bounds, Aabb::of((0..320).filter_map(|triangle| back.corners(triangle)).flatten()));
         // And with fewer triangles again.
-        tree.resize(200, &|triangle| slow.bounds(triangle), &|_| [NONE; 3]);
-        tree.update(&[], &|triangle| slow.bounds(triangle));
+        let beside = |triangle: u32| alive[triangle as usize].then_some([NONE; 3]);
+        tree.update(200, &[], &|triangle| slow.bounds(triangle), &beside);
         let fewer = TriMesh::new(mesh.positions.clone(), mesh.triangles[..200].to_vec());
         Slow(&fewer, &alive[..200]).assert_agrees(&tree, point.into(), direction.into());
     }

@@ -10,8 +10,8 @@ const GAP: u32 = 2;
 /// hard edge see it. Render vertex i is vertex i of the mesh as opened as long as there are that many; where vertices have several
 /// render vertices, the others follow.
 ///
-/// Indices keep their meaning: what is removed leaves a hole. A removed triangle stays as three times index zero, which draws
-/// nothing; a removed vertex is not drawn any more.
+/// What is removed leaves a hole: a triangle stays as three times index zero, which draws nothing; a vertex is not drawn any more.
+/// Later strokes fill the holes, but for those of vertices of the mesh as opened, so that buffers do not grow with each stroke.
 #[derive(Debug, Clone, Copy)]
 pub struct RenderBuffers<'a> {
     /// Grows whenever a buffer has moved in memory, so that addresses taken before are stale.
@@ -48,7 +48,7 @@ pub struct Changes {
     pub positions: Vec<DirtyRange>,
     /// Of normals.
     pub normals: Vec<DirtyRange>,
-    /// Of all sets of texture coordinates and of colors.
+    /// Of all sets of texture coordinates and of colors, and of where render vertices [come from](super::Session::origin_of).
     pub attributes: Vec<DirtyRange>,
     /// Of indices, in triangles.
     pub indices: Vec<DirtyRange>,

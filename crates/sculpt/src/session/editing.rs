@@ -49,9 +49,9 @@ impl Surface {
         let gained = self.volume_under(half_edge, position);
 
         let split = self.topology.split(half_edge);
-        self.positions.push(position);
+        self.positions.put(split.vertex, position);
         let ends = [from, to].map(|corner| self.offsets.get(self.render.get(corner).vertex));
-        self.offsets.push(0.5 * (ends[0] + ends[1]));
+        self.offsets.put(split.vertex, 0.5 * (ends[0] + ends[1]));
         let inserted = self.insert_corner(split.vertex, [from, to], near);
         let (mut corners, patch) = (self.corners.get(near), self.patches.get(near));
         let apex = corners[(side + 2) % 3];
@@ -80,7 +80,7 @@ impl Surface {
         let [one, other] = ends.map(|end| self.render.items()[end as usize].origin);
         let parent = self.patches.items()[triangle as usize].parent;
         let origin = one.zip(other).map(|(one, other)| midpoint_origin(&self.opened, [one, other], parent));
-        self.push_render_vertex(RenderVertex { vertex, origin })
+        self.add_render_vertex(RenderVertex { vertex, origin })
     }
 
     /// Volume between the two triangles at an edge and those that a vertex at `position` splits them into.
@@ -136,7 +136,7 @@ impl Surface {
     pub(super) fn collapse(&mut self, half_edge: u32) -> f64 {
         let twin = self.topology.twin(half_edge);
         let gained = self.volume_of_collapse(half_edge);
-        let kept = self.corner(next_half_edge(half_edge));
+        let [removed, kept] = [half_edge, next_half_edge(half_edge)].map(|half_edge| self.corner(half_edge));
         let (side, far_side) = (half_edge as usize % 3, twin as usize % 3);
         let (patch, far_patch) = (self.patches.get(half_edge / 3), self.patches.get(twin / 3));
         // The edges that the removed triangles leave behind.
@@ -146,6 +146,8 @@ impl Surface {
         ];
         let fan: Vec<u32> = self.topology.fan(self.topology.start(half_edge)).collect();
         self.topology.collapse(half_edge);
+        // Inside one piece of the surface, all triangles see the same one.
+        self.remove_render_vertex(removed);
         for leaving in fan {
             let mut corners = self.corners.get(leaving / 3);
             corners[leaving as usize % 3] = kept;

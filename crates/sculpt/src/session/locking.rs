@@ -30,7 +30,7 @@ impl ActiveStroke {
         let number = |vertex: u32| vertices.partition_point(|&other| other < vertex) as u32;
         let triangles: Vec<[u32; 3]> = there.iter().map(|triangle| triangle.map(number)).collect();
         let rest: Vec<DVec3> =
-            vertices.iter().map(|&vertex| self.base(surface, vertex) + surface.offsets.get(vertex)).collect();
+            vertices.iter().map(|&vertex| surface.base(vertex) + surface.offsets.get(vertex)).collect();
         // A vertex that has not moved must be equal to itself at rest.
         let flow = |&vertex: &u32| surface.position(vertex) + surface.offsets.get(vertex);
         let mut image: Vec<DVec3> = vertices.iter().map(flow).collect();
@@ -53,7 +53,7 @@ impl ActiveStroke {
         let journal = surface.topology.journal();
         let before = |vertex: u32| {
             let offset = surface.offsets.original(vertex).unwrap_or(DVec3::ZERO);
-            self.base(surface, vertex) + offset
+            surface.base(vertex) + offset
         };
         let origin = touched.iter().find_map(|&triangle| surface.shown_corners(triangle));
         let origin = origin.map_or(DVec3::ZERO, |corners| corners[0]);

@@ -130,8 +130,8 @@ impl Session {
         Some(sum.value())
     }
 
-    /// Number of vertices, those included that were removed. The first ones are those of the mesh as opened, in its order; the
-    /// others follow in the order in which they were inserted. Numbers never change their meaning.
+    /// Number of vertices, those included that were removed. The first ones are those of the mesh as opened, in its order; inserted
+    /// ones follow, and may take the numbers of others that an earlier stroke has removed.
     pub fn vertex_count(&self) -> usize {
         self.surface.positions.items().len()
     }
@@ -174,7 +174,7 @@ impl Session {
         record.is_alive().then_some(record.vertices)
     }
 
-    /// The vertex that a render vertex belongs to.
+    /// The vertex that a render vertex belongs to; [`NONE`](isochore_mesh::NONE) where it was removed.
     ///
     /// # Panics
     /// If there is no such render vertex.
@@ -183,6 +183,7 @@ impl Session {
     }
 
     /// Where on the mesh as opened a render vertex takes its attributes from; none for a vertex without triangles.
+    /// Of which render vertices that changes, [`Changes::attributes`](super::Changes::attributes) tells.
     ///
     /// # Panics
     /// If there is no such render vertex.

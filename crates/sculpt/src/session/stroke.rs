@@ -7,7 +7,7 @@ use isochore_field as field;
 use isochore_mesh::{Aabb, CompensatedSum};
 use rayon::prelude::*;
 
-use super::{InteractiveRefinement, MoveReceipt, SessionTool, StrokeReceipt, marks::Marks, surface::Surface};
+use super::{InteractiveRefinement, MoveReceipt, SessionTool, StrokeReceipt, marks::Marks};
 use crate::recipe::Key;
 
 /// Points that one task carries through all that a stroke did so far.
@@ -25,8 +25,6 @@ pub(super) struct ActiveStroke {
     pub(super) way: Vec<Segment>,
     /// Triangles there when it began.
     pub(super) alive: usize,
-    /// Vertices that it inserted, in order.
-    pub(super) inserted: Vec<Inserted>,
     /// Triangles with a vertex that moved.
     pub(super) moved: Vec<u32>,
     pub(super) moved_marks: Marks,
@@ -35,15 +33,6 @@ pub(super) struct ActiveStroke {
     /// Size of all that was summed up, for the bound on rounding.
     pub(super) remeshed: f64,
     pub(super) receipt: StrokeReceipt,
-}
-
-/// A vertex that the stroke inserted.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Inserted {
-    /// Where it lies on the surface as it stood when the stroke began.
-    pub(super) base: DVec3,
-    /// How many times what had moved was halved for it.
-    pub(super) halvings: u8,
 }
 
 /// The way between two poses.
@@ -91,7 +80,6 @@ impl ActiveStroke {
             pose: None,
             way: Vec::new(),
             alive,
-            inserted: Vec::new(),
             moved: Vec::new(),
             moved_marks: Marks::default(),
             splits: CompensatedSum::default(),
@@ -99,20 +87,6 @@ impl ActiveStroke {
             remeshed: 0.0,
             receipt: StrokeReceipt::default(),
         }
-    }
-
-    /// Where a vertex lies on the surface as it stood when the stroke began.
-    pub(super) fn base(&self, surface: &Surface, vertex: u32) -> DVec3 {
-        match surface.positions.original(vertex) {
-            Some(position) => position,
-            None => self.inserted[vertex as usize - surface.positions.original_len()].base,
-        }
-    }
-
-    /// How many times the stroke has halved what it had moved to insert a vertex.
-    pub(super) fn halvings(&self, surface: &Surface, vertex: u32) -> u8 {
-        let inserted = (vertex as usize).checked_sub(surface.positions.original_len());
-        inserted.map_or(0, |inserted| self.inserted[inserted].halvings)
     }
 
     /// Carries points of that surface through all that the stroke did so far. Returns how many times the fields were evaluated.

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use isochore_mesh::{Aabb, Delta, EditDelta, EditMesh, Journaled, NONE, Origin, SurfaceTree, TriMesh};
+use isochore_mesh::{Aabb, Delta, EditDelta, EditMesh, FreeSlots, Journaled, NONE, Origin, SurfaceTree, TriMesh};
 
 use super::{
     NormalWeights,
     buffers::{Changes, DirtyPages, RenderBuffers},
+    inserted::InsertedVertices,
     marks::Marks,
 };
 
@@ -17,6 +18,11 @@ pub(super) struct RenderVertex {
     pub(super) vertex: u32,
     /// Where it takes its attributes from; none for a vertex without triangles.
     pub(super) origin: Option<Origin>,
+}
+
+impl RenderVertex {
+    /// One that shows nothing any more.
+    pub(super) const REMOVED: Self = Self { vertex: NONE, origin: None };
 }
 
 /// What a triangle has from the mesh as opened.
@@ -39,8 +45,11 @@ pub(super) struct Surface {
     /// By triangle its render vertices, all zero where it was removed: the index buffer itself.
     pub(super) corners: Journaled<[u32; 3]>,
     pub(super) patches: Journaled<Patch>,
-    /// Grows only; nothing in it is ever changed.
+    /// Nothing in it is ever changed, but removed, and its place taken.
     pub(super) render: Journaled<RenderVertex>,
+    free_render: FreeSlots,
+    /// Render vertices whose texture coordinates and colors are to be written.
+    renewed: Vec<u32>,
     pub(super) render_positions: Journaled<[f32; 3]>,
     pub(super) normals: Journaled<[f32; 3]>,
     uvs: Vec<Vec<[f32; 2]>>,
@@ -50,6 +59,7 @@ pub(super) struct Surface {
     /// Whether shading breaks anywhere.
     pub(super) has_hard_edges: bool,
     dirty: Dirty,
+    pub(super) inserted: InsertedVertices,
     /// Scratch.
     pub(super) triangle_marks: Marks,
     pub(super) vertex_marks: Marks,
@@ -104,6 +114,9 @@ impl Surface {
             has_hard_edges: patches.iter().any(|patch| patch.hard != 0),
             patches: Journaled::new(patches),
             render: Journaled::new(render),
+            free_render: FreeSlots::new(count as u32),
+            renewed: (0..count as u32).collect(),
+            inserted: InsertedVertices::new(opened.positions.len()),
             normals: Journaled::new(vec![[0.0; 3]; count]),
             uvs: vec![Vec::new(); opened.corner.uvs.len()],
             colors: Vec::new(),
@@ -161,6 +174,7 @@ impl Surface {
     }
 
     pub(super) fn begin(&mut self) -> usize {
+        self.inserted.clear();
         self.positions.begin();
         self.offsets.begin();
         self.corners.begin();
@@ -182,6 +196,7 @@ impl Surface {
             render_positions: self.render_positions.finish(),
             normals: self.normals.finish(),
         };
+        self.free_render.follow(&self.render, &delta.render, |render| render.vertex == NONE);
         delta.shrink();
         delta
     }
@@ -205,6 +220,9 @@ impl Surface {
             },
         );
 
+        self.free_render.follow(&self.render, &delta.render, |render| render.vertex == NONE);
+        self.renewed.extend(delta.render.indices());
+        self.renewed.extend(delta.render.length() as u32..self.render.items().len() as u32);
         delta.render_positions.indices().for_each(|index| self.dirty.positions.mark(index));
         delta.normals.indices().for_each(|index| self.dirty.normals.mark(index));
         delta.corners.indices().for_each(|index| self.dirty.indices.mark(index));
@@ -221,8 +239,7 @@ impl Surface {
         let moved: Vec<u32> = moved.filter(|&vertex| (vertex as usize) < vertices).collect();
         let edited: Vec<u32> =
             delta.topology.triangles.indices().filter(|&triangle| (triangle as usize) < now).collect();
-        let mut changed = self.triangles_around(&moved, &edited);
-        changed.retain(|&triangle| (triangle as usize) < triangles);
+        let changed = self.triangles_around(&moved, &edited);
         self.update_tree(&changed);
     }
 
@@ -240,10 +257,11 @@ impl Surface {
             let corners = triangle.is_alive().then(|| triangle.vertices.map(ends));
             Aabb::of(corners.into_iter().flatten().flatten())
         };
-        let near =
-            |triangle: u32| triangles[triangle as usize].twins.map(|twin| if twin == NONE { NONE } else { twin / 3 });
-        self.tree.resize(triangles.len(), &bounds, &near);
-        self.tree.update(changed, &bounds);
+        let near = |triangle: u32| {
+            let triangle = &triangles[triangle as usize];
+            triangle.is_alive().then(|| triangle.twins.map(|twin| if twin == NONE { NONE } else { twin / 3 }))
+        };
+        self.tree.update(triangles.len(), changed, &bounds, &near);
     }
 
     /// Brings the buffers up to date at `vertices`, which have triangles that moved or were edited, and where `loose` vertices,
@@ -260,20 +278,12 @@ impl Surface {
 
     /// Sets the render vertices of a triangle.
     pub(super) fn set_corners(&mut self, triangle: u32, corners: [u32; 3]) {
-        if triangle as usize == self.corners.items().len() {
-            self.corners.push(corners);
-        } else {
-            self.corners.set(triangle, corners);
-        }
+        self.corners.put(triangle, corners);
         self.dirty.indices.mark(triangle);
     }
 
     pub(super) fn set_patch(&mut self, triangle: u32, patch: Patch) {
-        if triangle as usize == self.patches.items().len() {
-            self.patches.push(patch);
-        } else {
-            self.patches.set(triangle, patch);
-        }
+        self.patches.put(triangle, patch);
     }
 
     /// Sets the position of a render vertex.
@@ -292,47 +302,52 @@ impl Surface {
         }
     }
 
-    /// Appends a render vertex of a vertex that stands where it is.
-    pub(super) fn push_render_vertex(&mut self, render: RenderVertex) -> u32 {
+    /// Adds a render vertex of a vertex that stands where it is.
+    pub(super) fn add_render_vertex(&mut self, render: RenderVertex) -> u32 {
         let position = self.shown(render.vertex).as_vec3().to_array();
-        self.render_positions.push(position);
-        self.normals.push([0.0; 3]);
-        let index = self.render.push(render);
+        let index = self.free_render.take(self.render.items().len());
+        self.render_positions.put(index, position);
+        self.normals.put(index, [0.0; 3]);
+        self.render.put(index, render);
+        self.renewed.push(index);
         self.dirty.positions.mark(index);
         self.dirty.normals.mark(index);
         index
+    }
+
+    /// Removes a render vertex that no triangle has any more.
+    pub(super) fn remove_render_vertex(&mut self, index: u32) {
+        self.render.set(index, RenderVertex::REMOVED);
+        self.renewed.push(index);
     }
 
     fn has_colors(&self) -> bool {
         !(self.opened.corner.colors.is_empty() && self.opened.vertex.colors.is_empty())
     }
 
-    /// Brings texture coordinates and colors to the number of render vertices there are.
+    /// Writes texture coordinates and colors of the render vertices that are new, or were removed, and makes their number right.
     fn write_attributes(&mut self) {
         let count = self.render.items().len();
         let (opened, render) = (&self.opened, self.render.items());
-        let mut known = count;
+        self.renewed.retain(|&index| (index as usize) < count);
         for (index, set) in self.uvs.iter_mut().enumerate() {
-            set.truncate(count);
-            known = known.min(set.len());
-            let uv = |render: &RenderVertex| match &render.origin {
-                Some(origin) => opened.uv_at(index, origin).as_vec2().to_array(),
-                None => [0.0; 2],
-            };
-            set.extend(render[set.len()..].iter().map(uv));
+            set.resize(count, [0.0; 2]);
+            for &renewed in &self.renewed {
+                let origin = &render[renewed as usize].origin;
+                set[renewed as usize] =
+                    origin.as_ref().map_or([0.0; 2], |origin| opened.uv_at(index, origin).as_vec2().to_array());
+            }
         }
-        if self.has_colors() {
-            self.colors.truncate(count);
-            known = known.min(self.colors.len());
-            let (opened, render) = (&self.opened, self.render.items());
-            let color = |render: &RenderVertex| {
-                let own = || opened.vertex.colors.get(render.vertex as usize).copied();
-                let color = render.origin.as_ref().map_or_else(own, |origin| opened.color_at(origin));
-                color.unwrap_or_default().as_vec4().to_array()
-            };
-            self.colors.extend(render[self.colors.len()..].iter().map(color));
+        if !(opened.corner.colors.is_empty() && opened.vertex.colors.is_empty()) {
+            self.colors.resize(count, [0.0; 4]);
+            for &renewed in &self.renewed {
+                let RenderVertex { vertex, origin } = &render[renewed as usize];
+                let own = || opened.vertex.colors.get(*vertex as usize).copied();
+                let color = origin.as_ref().map_or_else(own, |origin| opened.color_at(origin));
+                self.colors[renewed as usize] = color.unwrap_or_default().as_vec4().to_array();
+            }
         }
-        self.dirty.attributes.mark_range(known, count);
+        self.renewed.drain(..).for_each(|index| self.dirty.attributes.mark(index));
     }
 
     /// Notes whether a buffer has moved.
@@ -367,11 +382,7 @@ impl Surface {
             generation: self.dirty.generation,
             positions: self.dirty.positions.take(render),
             normals: self.dirty.normals.take(render),
-            attributes: self.dirty.attributes.take(if self.uvs.is_empty() && self.colors.is_empty() {
-                0
-            } else {
-                render
-            }),
+            attributes: self.dirty.attributes.take(render),
             indices: self.dirty.indices.take(self.corners.items().len()),
         }
     }

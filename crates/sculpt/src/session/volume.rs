@@ -46,7 +46,7 @@ impl ActiveStroke {
         };
         for triangle in self.touched(surface) {
             if let Some(before) = journal.original(triangle).filter(|before| before.is_alive()) {
-                add(before.vertices.map(|vertex| self.base(surface, vertex)), -1.0);
+                add(before.vertices.map(|vertex| surface.base(vertex)), -1.0);
             }
             if let Some(after) = surface.corners_of(triangle) {
                 add(after, 1.0);
@@ -65,7 +65,7 @@ impl ActiveStroke {
             if !record.is_alive() {
                 continue;
             }
-            let before = record.vertices.map(|vertex| self.base(surface, vertex));
+            let before = record.vertices.map(|vertex| surface.base(vertex));
             let after = record.vertices.map(|vertex| surface.position(vertex));
             let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a) / 2.0;
             let shift = (0..3).map(|side| after[side] - before[side]).sum::<DVec3>() / 3.0;

@@ -7,6 +7,7 @@ mod queries;
 mod random_calls;
 mod refinement;
 mod replay;
+mod reuse;
 mod undo;
 
 use std::sync::Arc;

@@ -170,7 +170,8 @@ impl Preview {
 
 #[wasm_bindgen]
 impl Origins {
-    /// The vertex that each shows.
+    /// The vertex that each shows; 2³² − 1 where that was removed. The first ones are those of the mesh as opened; inserted ones
+    /// follow, and may take the numbers of others that an earlier stroke has removed.
     #[wasm_bindgen(getter)]
     pub fn vertices(&self) -> Vec<u32> {
         self.vertices.clone()

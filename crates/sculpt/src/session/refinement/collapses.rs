@@ -23,13 +23,13 @@ impl Pass<'_> {
         for (_, [a, b]) in short {
             let length2 = |ends: [DVec3; 2]| ends[0].distance_squared(ends[1]);
             let now = length2([a, b].map(|vertex| self.surface.position(vertex)));
-            let before = length2([a, b].map(|vertex| self.stroke.base(self.surface, vertex)));
+            let before = length2([a, b].map(|vertex| self.surface.base(vertex)));
             if now >= limits.shortest2 || now >= SQUEEZED * SQUEEZED * before {
                 continue;
             }
             let Some(half_edge) = self.editable([a, b], options) else { continue };
             let twin = self.surface.topology.twin(half_edge);
-            // What was inserted last goes first.
+            // What was inserted goes first.
             let mut ways = [half_edge, twin];
             ways.sort_by_key(|&way| {
                 std::cmp::Reverse(if way == isochore_mesh::NONE { 0 } else { self.surface.topology.start(way) })

@@ -1,4 +1,3 @@
-use super::super::stroke::Inserted;
 use super::{InteractiveRefinement, Limits, MayTouch, Pass, survey};
 
 /// Rounds of splitting in one pass: each halves what is too long, so this many resolve edges a thousand times too long. What is
@@ -42,7 +41,7 @@ impl Pass<'_> {
                 break;
             }
             let base = |&(_, ends): &(f64, [u32; 2])| {
-                let [a, b] = ends.map(|vertex| self.stroke.base(self.surface, vertex));
+                let [a, b] = ends.map(|vertex| self.surface.base(vertex));
                 0.5 * (a + b)
             };
             let bases: Vec<_> = long.iter().map(base).collect();
@@ -55,7 +54,7 @@ impl Pass<'_> {
                 let Some(half_edge) = self.editable(ends, options).filter(|_| image.is_finite()) else { continue };
                 let halvings = self.halvings(ends);
                 let (split, gained) = self.surface.split(half_edge, image);
-                self.stroke.inserted.push(Inserted { base, halvings });
+                self.surface.inserted.push(split.vertex, base, halvings);
                 self.stroke.splits.add(gained);
                 self.edited.extend(split.near.into_iter().chain(split.far.into_iter().flatten()));
                 self.done.inserted_vertices += 1;
@@ -71,8 +70,8 @@ impl Pass<'_> {
 
     /// How many times a vertex between two others would be one of halving what the stroke has moved.
     fn halvings(&self, ends: [u32; 2]) -> u8 {
-        let has_moved = ends.iter().any(|&end| self.stroke.base(self.surface, end) != self.surface.position(end));
-        let [one, other] = ends.map(|end| self.stroke.halvings(self.surface, end));
+        let has_moved = ends.iter().any(|&end| self.surface.base(end) != self.surface.position(end));
+        let [one, other] = ends.map(|end| self.surface.halvings(end));
         one.max(other) + u8::from(has_moved)
     }
 }

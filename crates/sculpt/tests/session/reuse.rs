@@ -1,0 +1,92 @@
+use super::*;
+
+/// Splits to edges of a third of the brush's reach, and nothing else.
+fn refining() -> StrokeOptions {
+    let refine = InteractiveRefinement { longest: Some(0.08), collapse: 0.0, ..InteractiveRefinement::default() };
+    StrokeOptions { refine: Some(refine) }
+}
+
+/// Collapses all that the stroke squeezes to half, and splits nothing.
+fn coarsening() -> StrokeOptions {
+    let refine = InteractiveRefinement { longest: Some(1.0), collapse: 0.3, ..InteractiveRefinement::default() };
+    StrokeOptions { refine: Some(refine) }
+}
+
+/// Elements that are there, and places for them: render vertices and triangles.
+fn lengths(session: &Session) -> [[usize; 2]; 2] {
+    let (render, triangles) = (session.buffers().positions.len(), session.buffers().indices.len());
+    let shown = (0..render as u32).filter(|&render| session.vertex_of(render) != u32::MAX).count();
+    [[shown, render], [session.triangle_count(), triangles]]
+}
+
+/// The brush is pulled out of the ball along a direction, or goes back.
+fn pull(direction: DVec3, is_back: bool) -> Vec<Pose> {
+    let pose = |index: usize| {
+        let step = if is_back { 8 - index } else { index };
+        Pose::at(direction * (1.0 + 0.05 * step as f64))
+    };
+    (0..=8).map(pose).collect()
+}
+
+#[test]
+fn buffers_are_as_long_as_the_surface_needs_and_not_its_history() {
+    for mesh in [icosphere(1.0, 3), super::attributes::painted_ball()] {
+        let mut session = open(mesh);
+        let opened = session.opened().positions.len();
+        let [mut most_shown, mut most_triangles] = [0; 2];
+        let mut inserted = 0;
+        let mut snapshots = vec![snapshot(&session)];
+        for round in 0..30 {
+            let (is_back, direction) = (round % 2 == 1, [DVec3::X, DVec3::Y, DVec3::NEG_Z][round / 2 % 3]);
+            let before = session.vertices().count();
+            let options = if is_back { coarsening() } else { refining() };
+            make(&mut session, &brush(), &options, &pull(direction, is_back));
+            let now = session.vertices().count();
+            assert_eq!(now > before, !is_back);
+            inserted += now.saturating_sub(before);
+
+            // A stroke takes all places that are free before it makes new ones, those of vertices of the mesh as opened apart.
+            let [[shown, render], [triangles, places]] = lengths(&session);
+            let gone = opened - session.vertices().filter(|&vertex| (vertex as usize) < opened).count();
+            (most_shown, most_triangles) = (most_shown.max(shown + gone), most_triangles.max(triangles));
+            assert!(render <= most_shown && places <= most_triangles);
+            snapshots.push(snapshot(&session));
+        }
+        assert_sound(&session);
+        // Many times as many as there are places for.
+        let places = session.vertex_count() - opened;
+        assert!(inserted > 3 * places && places > 300, "{inserted} {places}");
+        for expected in snapshots.iter().rev().skip(1) {
+            assert!(session.undo().unwrap());
+            assert_eq!(snapshot(&session), *expected);
+        }
+        for expected in &snapshots[1..] {
+            assert!(session.redo().unwrap());
+            assert_eq!(snapshot(&session), *expected);
+        }
+    }
+}
+
+#[test]
+fn places_are_taken_alike_whatever_was_undone() {
+    let strokes = |session: &mut Session, is_hesitant: bool| {
+        for round in 0..8 {
+            let (is_back, direction) = (round % 2 == 1, [DVec3::X, DVec3::Z][round / 2 % 2]);
+            let options = if is_back { coarsening() } else { refining() };
+            if is_hesitant {
+                make(session, &rod(), &refining(), &pull(DVec3::Y, is_back));
+                make(session, &brush(), &coarsening(), &pull(direction, !is_back));
+                assert!(session.undo().unwrap() && session.undo().unwrap());
+                session.begin_stroke(&brush(), refining()).unwrap();
+                pull(direction, false).iter().for_each(|pose| assert!(session.move_to(pose, 0.0).is_ok()));
+                session.cancel_stroke().unwrap();
+            }
+            make(session, &brush(), &options, &pull(direction, is_back));
+        }
+    };
+    let (mut straight, mut hesitant) = (ball(), ball());
+    strokes(&mut straight, false);
+    strokes(&mut hesitant, true);
+    assert!(straight.vertex_count() > straight.vertices().count());
+    assert_eq!(snapshot(&straight), snapshot(&hesitant));
+}
