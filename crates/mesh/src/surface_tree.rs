@@ -146,15 +146,6 @@ impl SurfaceTree {
         self.is_due.reserve(nodes);
     }
 
-    /// Lets go a triangle that is not there any more.
-    fn remove(&mut self, triangle: u32) {
-        let leaf = self.leaf_of[triangle as usize];
-        if leaf != NONE {
-            self.make_due(leaf);
-            self.unlink(triangle);
-        }
-    }
-
     /// Takes in a triangle beside those of its neighbors that are there, or where a search finds its place.
     fn insert(&mut self, triangle: u32, neighbors: [u32; 3], bounds: &impl Fn(u32) -> Aabb) {
         let leaf_of = |&neighbor: &u32| self.leaf_of.get(neighbor as usize).copied().filter(|&leaf| leaf != NONE);
@@ -169,7 +160,7 @@ impl SurfaceTree {
     /// The leaf that a triangle fits in best.
     fn descend(&mut self, triangle: u32, bounds: &impl Fn(u32) -> Aabb) -> u32 {
         let bounds = bounds(triangle);
-        let center = center(bounds);
+        let center = bounds.center();
         let mut node = 0;
         loop {
             // Boxes grow at once, so that the next triangle finds its way by them.
@@ -191,8 +182,13 @@ impl SurfaceTree {
 
     /// Makes a leaf the parent of two, halved along the longest side of the box of the centers.
     fn cut(&mut self, leaf: u32, bounds: &impl Fn(u32) -> Aabb) {
+        let (gone, there): (Vec<_>, Vec<_>) = self
+            .of_leaf(leaf)
+            .map(|triangle| (bounds(triangle), triangle))
+            .partition(|&(bounds, _)| is_nothing(bounds));
+        gone.into_iter().for_each(|(_, triangle)| self.leaf_of[triangle as usize] = NONE);
         let mut triangles: Vec<(DVec3, u32)> =
-            self.of_leaf(leaf).map(|triangle| (center(bounds(triangle)), triangle)).collect();
+            there.into_iter().map(|(bounds, triangle)| (bounds.center(), triangle)).collect();
         let size = Aabb::of(triangles.iter().map(|&(center, _)| center)).size();
         let axis = size.max_position();
         triangles.sort_unstable_by(|a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
@@ -219,8 +215,10 @@ impl SurfaceTree {
     }
 
     /// Makes the number of triangles `count`, and follows those of the triangles `changed` that have moved, gone, or come back; those
-    /// that are new need not be among them. `bounds` tells the box of a triangle. `near` gives nothing for one that is not there; where
-    /// it knows neighbors of one that is, numbers out of range among them, its place is found without a search.
+    /// that are new need not be among them.
+    ///
+    /// `bounds` tells the box of a triangle, empty where it is not there, and `near` gives nothing then. Where it knows neighbors of one
+    /// that is there, numbers out of range among them, its place is found without a search.
     pub fn update(
         &mut self,
         count: usize,
@@ -229,15 +227,20 @@ impl SurfaceTree {
         near: &impl Fn(u32) -> Option<[u32; 3]>,
     ) {
         let known = self.leaf_of.len().min(count);
-        (count..self.leaf_of.len()).for_each(|triangle| self.remove(triangle as u32));
+        for triangle in count..self.leaf_of.len() {
+            let leaf = self.leaf_of[triangle];
+            if leaf != NONE {
+                self.make_due(leaf);
+                self.unlink(triangle as u32);
+            }
+        }
         self.leaf_of.resize(count, NONE);
         self.following.resize(count, NONE);
         let changed = changed.iter().copied().filter(|&triangle| (triangle as usize) < known);
         for triangle in changed.chain(known as u32..count as u32) {
-            match (near(triangle), self.leaf_of[triangle as usize]) {
-                (None, _) => self.remove(triangle),
-                (Some(neighbors), NONE) => self.insert(triangle, neighbors, bounds),
-                (Some(_), leaf) => self.make_due(leaf),
+            match self.leaf_of[triangle as usize] {
+                NONE => near(triangle).into_iter().for_each(|neighbors| self.insert(triangle, neighbors, bounds)),
+                leaf => self.make_due(leaf),
             }
         }
         let mut due = std::mem::take(&mut self.due);
@@ -245,10 +248,14 @@ impl SurfaceTree {
             due.drain(..).partition(|&node| self.nodes[node as usize].child == NONE);
         self.due = due;
         let boxes = leaves.par_iter().with_min_len(LEAVES_PER_TASK);
-        let boxes: Vec<Aabb> = boxes.map(|&leaf| self.tight_bounds(leaf as usize, bounds)).collect();
-        for (&leaf, bounds) in leaves.iter().zip(boxes) {
+        let boxes: Vec<(Aabb, bool)> = boxes.map(|&leaf| self.leaf_bounds(leaf, bounds)).collect();
+        for (&leaf, (tight, has_gone)) in leaves.iter().zip(boxes) {
             self.is_due[leaf as usize] = false;
-            self.nodes[leaf as usize].bounds = bounds;
+            self.nodes[leaf as usize].bounds = tight;
+            if has_gone {
+                let gone: Vec<u32> = self.of_leaf(leaf).filter(|&triangle| is_nothing(bounds(triangle))).collect();
+                gone.into_iter().for_each(|triangle| self.unlink(triangle));
+            }
         }
         // Children come behind their parents.
         branches.sort_unstable_by(|a, b| b.cmp(a));
@@ -258,15 +265,22 @@ impl SurfaceTree {
         }
     }
 
+    /// The box around the triangles of a leaf, and whether any of them is not there.
+    fn leaf_bounds(&self, leaf: u32, bounds: &impl Fn(u32) -> Aabb) -> (Aabb, bool) {
+        self.of_leaf(leaf).map(bounds).fold((Aabb::EMPTY, false), |(around, has_gone), bounds| {
+            (around.union(bounds), has_gone || is_nothing(bounds))
+        })
+    }
+
     fn tight_bounds(&self, node: usize, bounds: &impl Fn(u32) -> Aabb) -> Aabb {
         match self.nodes[node].child {
-            NONE => self.of_leaf(node as u32).map(bounds).fold(Aabb::EMPTY, Aabb::union),
+            NONE => self.leaf_bounds(node as u32, bounds).0,
             child => self.nodes[child as usize].bounds.union(self.nodes[child as usize + 1].bounds),
         }
     }
 }
 
-/// The center of a box; that of an empty one is anywhere.
-fn center(bounds: Aabb) -> DVec3 {
-    if bounds.min.x <= bounds.max.x { bounds.center() } else { DVec3::ZERO }
+/// Whether a box holds nothing.
+fn is_nothing(bounds: Aabb) -> bool {
+    bounds.min.x > bounds.max.x
 }

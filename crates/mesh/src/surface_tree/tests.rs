@@ -40,7 +40,7 @@ impl Slow<'_> {
             .filter_map(|triangle| {
                 let mut single = SurfaceTree::new(&[], &[]).unwrap();
                 single.update(self.1.len(), &[], &|triangle| self.bounds(triangle), &|other| {
-                    (other == triangle).then_some([NONE; 3])
+                    (other == triangle && self.1[triangle as usize]).then_some([NONE; 3])
                 });
                 single.cast_ray(point, direction, &corners).map(|hit| (hit.distance, triangle))
             })
