@@ -3,6 +3,9 @@
 //! What reading does beyond the libraries: seams are welded, indices and coordinates checked, everything is in double precision,
 //! and attributes go to corners.
 //!
+//! Beside libraries for Rust each reading is the first of a process, whose memory the system has yet to hand out, as in a program
+//! that reads a file. Those for Python go on in one process, as we do beside them, and may use memory again.
+//!
 //! Arguments are the endings of the formats to compare; without any it is all.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "benchmarks print their results, and who is missing")]
@@ -10,6 +13,7 @@
 use std::fs::{self, File};
 use std::io::{BufWriter, Cursor};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use isochore_bench::{Comparison, PythonPeer, cpu_seconds, median, on_one_core, scratch};
 use isochore_mesh::io::{self, Format};
@@ -31,32 +35,68 @@ const PEERS: [(&str, &str); 4] = [
     ("trimesh", "trimesh 5.2.0"),
 ];
 
+/// First argument of a process that reads one file; the next are who reads it and its path.
+const READ_ONCE: &str = "read-once";
+
 fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [job, reader, path] = &arguments[..]
+        && job == READ_ONCE
+    {
+        return println!("{}", read_once(reader, Path::new(path)));
+    }
     on_one_core(|| {
         let mut mesh = primitives::icosphere(1.0, 7);
-        compare_formats(&mesh, "");
+        compare_formats(&mesh, "", &FORMATS, &PEERS);
         let begin = cpu_seconds();
         let welded = mesh.clone().welded();
         let milliseconds = 1e3 * (cpu_seconds() - begin);
         println!("welding {} vertices takes {milliseconds:.1} ms, the copy included", welded.positions.len());
         let normals = mesh.vertex_normals();
-        mesh.corner.normals =
-            mesh.triangles.iter().map(|t| t.map(|vertex| normals[vertex as usize].as_vec3())).collect();
-        compare_formats(&mesh, ", with normals");
+        mesh.corner.normals = by_corner(&mesh, |vertex| normals[vertex].as_vec3());
+        compare_formats(&mesh, ", with normals", &FORMATS, &PEERS);
+
+        let mut large = primitives::icosphere(1.0, 8);
+        let normals = large.vertex_normals();
+        large.corner.normals = by_corner(&large, |vertex| normals[vertex].as_vec3());
+        compare_formats(&large, ", with normals", &[(Format::Glb, "glb")], &[]);
+        large.corner.uvs = vec![by_corner(&large, |vertex| normals[vertex].truncate())];
+        compare_formats(&large, ", with texture coordinates and normals", &[(Format::Obj, "obj")], &[]);
     });
+}
+
+fn by_corner<T>(mesh: &TriMesh, value: impl Fn(usize) -> T) -> Vec<[T; 3]> {
+    mesh.triangles.iter().map(|triangle| triangle.map(|vertex| value(vertex as usize))).collect()
+}
+
+/// Seconds that we or the library for Rust take for a file, the first that this process reads.
+fn read_once(reader: &str, path: &Path) -> f64 {
+    let library = Format::of_path(path).and_then(library_of);
+    match (reader, library) {
+        ("library", Some((_, library))) => timed(|| library(path)),
+        _ => timed(|| io::read(path).expect("a mesh").triangles.len()),
+    }
+}
+
+/// The same in a process of its own, on the same core.
+fn first_reading(reader: &str, path: &Path) -> f64 {
+    let program = std::env::current_exe().expect("this program has a path");
+    let output =
+        Command::new(program).args([READ_ONCE, reader]).arg(path).output().expect("this program can be started");
+    String::from_utf8_lossy(&output.stdout).trim().parse().expect("the file was read")
 }
 
 /// A peer's job in one round, in seconds of work; none where the peer cannot do it.
 type Job<'a> = Box<dyn FnMut() -> Option<f64> + 'a>;
 
-fn compare_formats(mesh: &TriMesh, with: &str) {
+fn compare_formats(mesh: &TriMesh, with: &str, formats: &[(Format, &str)], peers: &[(&str, &str)]) {
     let mut python = PythonPeer::start("files", &[]);
     if let Err(error) = &python {
         eprintln!("peers in Python are missing: {error}");
     }
     Comparison::print_heading();
     let wanted: Vec<String> = std::env::args().skip(1).collect();
-    for (format, ending) in FORMATS {
+    for &(format, ending) in formats {
         if !wanted.is_empty() && !wanted.iter().any(|wanted| wanted == ending) {
             continue;
         }
@@ -76,13 +116,13 @@ fn compare_formats(mesh: &TriMesh, with: &str) {
             Comparison { job, peer: peer.into(), unit, ours, theirs, accuracy: String::new() }.report();
         };
         let read_job = format!("reading {}", ending.to_uppercase());
-        let mut read_ours = || timed(|| std::hint::black_box(io::read(&path).expect("a mesh")).triangles.len());
-        if let Some((peer, library)) = library_of(format) {
-            let mut theirs: Job<'_> = Box::new(|| Some(timed(|| library(&path))));
-            row(read_job.clone(), peer, interleaved(&mut read_ours, &mut theirs));
+        if let Some((peer, _)) = library_of(format) {
+            let mut theirs: Job<'_> = Box::new(|| Some(first_reading("library", &path)));
+            row(read_job.clone(), peer, interleaved(&mut || first_reading("isochore", &path), &mut theirs));
         }
+        let mut read_ours = || timed(|| std::hint::black_box(io::read(&path).expect("a mesh")).triangles.len());
         let Ok(python) = &mut python else { continue };
-        for (name, peer) in PEERS {
+        for (name, peer) in peers {
             let mut ask =
                 |job: &str, path: &PathBuf| python.seconds(&json!({ "job": format!("{name}_{job}"), "path": path }));
             let mut theirs: Job<'_> = Box::new(|| ask("read", &path).ok());
