@@ -11,6 +11,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::Aabb;
+use build::Groups;
 pub use closest_point::{ClosestPoint, Feature};
 pub(crate) use closest_point::{OnTriangle, SquaredDistance, closest_on_triangle};
 pub(crate) use unit_frame::UnitFrame;
@@ -94,16 +95,32 @@ impl Bvh {
     /// # Errors
     /// See [`BvhError`].
     pub fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, BvhError> {
-        Ok(Self::within(checked_bounds(positions, triangles)?, positions, triangles, Clustering::Fine))
+        let bounds = checked_bounds(positions, triangles)?;
+        Ok(Self::within(bounds, positions, triangles, Clustering::Fine, || ()).0)
     }
 
-    /// Builds the hierarchy of triangles that have these [`checked_bounds`].
-    pub(crate) fn within(bounds: Aabb, positions: &[DVec3], triangles: &[[u32; 3]], clustering: Clustering) -> Self {
+    /// Builds the hierarchy of triangles that have these [`checked_bounds`]. What is to be done `meanwhile` has a thread to itself
+    /// while another one clusters, which cannot be shared.
+    pub(crate) fn within<T: Send>(
+        bounds: Aabb,
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        clustering: Clustering,
+        meanwhile: impl FnOnce() -> T + Send,
+    ) -> (Self, T) {
         let frame = UnitFrame::around(bounds);
         let positions: Vec<DVec3> = positions.par_iter().map(|&position| frame.inward(position)).collect();
-        let (nodes, order) = build::nodes_and_order(&positions, triangles, clustering as u32);
+        let groups = Groups::new(&positions, triangles, clustering as u32);
+        let ((nodes, order, depth), done) = rayon::join(
+            || {
+                let (nodes, order) = groups.clustered();
+                let depth = depth(&nodes);
+                (nodes, order, depth)
+            },
+            meanwhile,
+        );
         let triangles = order.par_iter().map(|&triangle| triangles[triangle as usize]).collect();
-        Self { bounds, frame, depth: depth(&nodes), nodes, order, triangles, positions }
+        (Self { bounds, frame, depth, nodes, order, triangles, positions }, done)
     }
 
     /// The point of the triangles nearest to `point`, and the feature it lies on. Of equally near ones, any, but always the same.

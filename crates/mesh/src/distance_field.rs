@@ -180,20 +180,16 @@ impl DistanceField {
         if bytes > options.memory_limit || grid.len() > u32::MAX as usize {
             return Err(DistanceFieldError::Memory { dims: grid.dims, bytes, limit: options.memory_limit });
         }
-        let ((bvh, search), (open_edges, volume_and_centroid)) = rayon::join(
-            || {
-                let is_worth_it = grid.len() / NODES_A_TRIANGLE > mesh.triangles.len();
-                let clustering = if is_worth_it { Clustering::Fine } else { Clustering::Coarse };
-                let bvh = Arc::new(Bvh::within(surface, &mesh.positions, &mesh.triangles, clustering));
-                let search = PacketSearch::new(&bvh, &grid);
-                (bvh, search)
-            },
-            || {
+        let is_worth_it = grid.len() / NODES_A_TRIANGLE > mesh.triangles.len();
+        let clustering = if is_worth_it { Clustering::Fine } else { Clustering::Coarse };
+        let (bvh, (open_edges, volume_and_centroid)) =
+            Bvh::within(surface, &mesh.positions, &mesh.triangles, clustering, || {
                 let open_edges = open_edges(&mesh.triangles, mesh.positions.len());
                 let volume_and_centroid = open_edges.is_empty().then(|| mesh.volume_and_centroid(surface));
                 (open_edges, volume_and_centroid)
-            },
-        );
+            });
+        let bvh = Arc::new(bvh);
+        let search = PacketSearch::new(&bvh, &grid);
         let is_closed = open_edges.is_empty();
         if let Some((volume, _)) = volume_and_centroid.filter(|&(volume, _)| volume < 0.0) {
             return Err(DistanceFieldError::InsideOut { volume });

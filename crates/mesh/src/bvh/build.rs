@@ -1,5 +1,7 @@
 //! The nodes of a hierarchy: groups of triangles along a space-filling curve, and above them what `obvhs` clusters.
 
+use std::ops::Range;
+
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -16,38 +18,61 @@ const NEIGHBORS: usize = 6;
 /// Rounds of clustering that compare with only one neighbor, while there are most clusters.
 const QUICK_ROUNDS: usize = 2;
 
-/// The nodes over one triangle or more, in preorder with children beside each other, and the triangles in the order of the leaves.
-///
-/// Up to `at_once` triangles that follow each other along the curve are clustered as one.
-pub(super) fn nodes_and_order(positions: &[DVec3], triangles: &[[u32; 3]], at_once: u32) -> (Vec<Node>, Vec<u32>) {
-    let points: Vec<[f32; 3]> = positions.par_iter().map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect();
-    let placed = along_morton_curve(&points, triangles);
-    let (leaves, bounds) = leaves(&placed, &points, triangles, at_once);
+/// Triangles whose leaves one task makes at most. Larger balances worse; smaller is more to hand out.
+const TASK: usize = 1 << 13;
 
-    // The convenience functions around this one read the clock, which WebAssembly has not.
-    let mut builder = PlocBuilder::new();
-    builder.current_nodes = leaves;
-    let mut tree = Bvh2::default();
-    builder.build_ploc_from_leaves::<NEIGHBORS, false>(&mut tree, bounds, SortPrecision::U64, QUICK_ROUNDS);
-    in_preorder(&tree.nodes, &placed)
+/// Groups of triangles along the curve.
+pub(super) struct Groups {
+    /// All triangles in the order of the curve.
+    placed: Vec<Placed>,
+    /// A node for each group.
+    leaves: Vec<Bvh2Node>,
 }
 
-/// Cuts the curve into leaves, at the boundaries of its largest cells first; and the box around all of them.
-fn leaves(placed: &[Placed], points: &[[f32; 3]], triangles: &[[u32; 3]], at_once: u32) -> (Vec<Bvh2Node>, Aabb) {
-    let mut leaves = Vec::with_capacity(placed.len() / 2 + 1);
-    let mut bounds = Aabb::empty();
-    let mut pending = vec![(0, placed.len())];
-    while let Some((start, end)) = pending.pop() {
-        if end - start <= at_once as usize {
-            let aabb = outward_box(&placed[start..end], points, triangles);
-            bounds = bounds.union(&aabb);
-            leaves.push(Bvh2Node::new(aabb, (end - start) as u32, start as u32));
+impl Groups {
+    /// Groups of up to `at_most` triangles that follow each other.
+    pub(super) fn new(positions: &[DVec3], triangles: &[[u32; 3]], at_most: u32) -> Self {
+        let points: Vec<[f32; 3]> = positions.par_iter().map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect();
+        let placed = along_morton_curve(&points, triangles);
+        let mut pieces = Vec::new();
+        cut_down(&placed, 0..placed.len(), TASK, |piece| pieces.push(piece));
+        let leaves: Vec<Vec<Bvh2Node>> = (pieces.into_par_iter())
+            .map(|piece| {
+                let mut leaves = Vec::with_capacity(piece.len() / 2);
+                cut_down(&placed, piece, at_most as usize, |leaf| {
+                    let aabb = outward_box(&placed[leaf.clone()], &points, triangles);
+                    leaves.push(Bvh2Node::new(aabb, leaf.len() as u32, leaf.start as u32));
+                });
+                leaves
+            })
+            .collect();
+        Self { placed, leaves: leaves.concat() }
+    }
+
+    /// The nodes over one triangle or more, in preorder with children beside each other, and the triangles in the order of the leaves.
+    /// One thread does all of it.
+    pub(super) fn clustered(self) -> (Vec<Node>, Vec<u32>) {
+        let bounds = self.leaves.iter().fold(Aabb::empty(), |bounds, leaf| bounds.union(leaf.aabb()));
+        // The convenience functions around this one read the clock, which WebAssembly has not.
+        let mut builder = PlocBuilder::new();
+        builder.current_nodes = self.leaves;
+        let mut tree = Bvh2::default();
+        builder.build_ploc_from_leaves::<NEIGHBORS, false>(&mut tree, bounds, SortPrecision::U64, QUICK_ROUNDS);
+        in_preorder(&tree.nodes, &self.placed)
+    }
+}
+
+/// Cuts a piece of the curve into pieces of at most so many triangles, at the boundaries of its largest cells first.
+fn cut_down(placed: &[Placed], piece: Range<usize>, at_most: usize, mut visit: impl FnMut(Range<usize>)) {
+    let mut pending = vec![piece];
+    while let Some(Range { start, end }) = pending.pop() {
+        if end - start <= at_most {
+            visit(start..end);
         } else {
             let middle = cut(&placed[start..end]) + start;
-            pending.extend([(middle, end), (start, middle)]);
+            pending.extend([middle..end, start..middle]);
         }
     }
-    (leaves, bounds)
 }
 
 /// Where the first bit changes in which numbers of cells differ; in the middle where all are alike.
