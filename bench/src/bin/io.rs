@@ -18,6 +18,8 @@ use std::process::Command;
 use isochore_bench::{Comparison, PythonPeer, cpu_seconds, median, on_one_core, scratch};
 use isochore_mesh::io::{self, Format};
 use isochore_mesh::{TriMesh, primitives};
+use ply_rs_bw::parser::Parser;
+use ply_rs_bw::ply::{BeginList, PropertyAccess, PropertyAccessResult};
 use serde_json::json;
 
 /// Rounds after one that warms up.
@@ -165,6 +167,7 @@ fn library_of(format: Format) -> Option<(&'static str, Reader)> {
     match format {
         Format::Obj => Some(("tobj 4.0.5", read_with_tobj)),
         Format::Glb => Some(("gltf 1.4, unwelded, f32", read_with_gltf)),
+        Format::Ply => Some(("ply-rs-bw 4.0", read_with_ply_rs)),
         Format::Stl => Some(("stl_io 0.11", read_with_stl_io)),
         _ => None,
     }
@@ -183,6 +186,37 @@ fn read_with_tobj(path: &Path) -> f64 {
 fn read_with_stl_io(path: &Path) -> f64 {
     let read = stl_io::read_stl(&mut Cursor::new(bytes(path))).expect("the file is sound");
     f64::from(read.vertices[0].0[0])
+}
+
+/// Coordinates of a vertex or indices of a face, without any other property.
+struct PlyElement {
+    position: [f64; 3],
+    indices: Vec<u32>,
+}
+
+impl PropertyAccess for PlyElement {
+    fn new() -> Self {
+        Self { position: [0.0; 3], indices: Vec::new() }
+    }
+
+    fn set_double(&mut self, name: &str, value: f64) -> PropertyAccessResult {
+        let Some(axis) = ["x", "y", "z"].iter().position(|&axis| axis == name) else {
+            return PropertyAccessResult::Ignored;
+        };
+        self.position[axis] = value;
+        PropertyAccessResult::Set
+    }
+
+    fn begin_list_uint(&mut self, _: &str, _: usize) -> BeginList<'_, u32> {
+        BeginList::Fill(&mut self.indices)
+    }
+}
+
+fn read_with_ply_rs(path: &Path) -> f64 {
+    let parser = Parser::<PlyElement>::new();
+    let read = parser.read_ply(&mut Cursor::new(bytes(path))).expect("the file is sound");
+    let face = &read.payload["face"][0];
+    read.payload["vertex"][face.indices[0] as usize].position[0]
 }
 
 fn read_with_gltf(path: &Path) -> f64 {
