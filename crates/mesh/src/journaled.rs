@@ -20,7 +20,10 @@ pub struct Journaled<T> {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Delta<T> {
     items: Vec<(u32, T)>,
+    /// Items beyond the shorter length, while the other end is the longer one.
     tail: Vec<T>,
+    /// Their number, wherever they are.
+    tail_length: usize,
     length: usize,
 }
 
@@ -110,7 +113,7 @@ impl<T: Copy> Journaled<T> {
         let length = self.start.take().unwrap_or(self.items.len());
         let mut items = std::mem::take(&mut self.old);
         items.sort_unstable_by_key(|&(index, _)| index);
-        Delta { items, tail: Vec::new(), length }
+        Delta { items, tail: Vec::new(), tail_length: self.items.len() - length, length }
     }
 
     /// Takes the array to the other end of `delta`, which then leads back. Deltas must be swapped in reverse order of their
@@ -123,7 +126,7 @@ impl<T: Copy> Journaled<T> {
         if delta.length < now {
             delta.tail = self.items.split_off(delta.length);
         } else {
-            self.items.append(&mut delta.tail);
+            self.items.append(&mut std::mem::take(&mut delta.tail));
         }
         self.slots.resize(self.items.len(), 0);
         delta.length = now;
@@ -157,9 +160,9 @@ impl<T> Delta<T> {
         self.length
     }
 
-    /// Bytes that it holds.
+    /// Bytes that it holds at most, whichever end it leads to: items appended are counted before it has to hold them.
     pub fn bytes(&self) -> usize {
-        self.items.capacity() * size_of::<(u32, T)>() + self.tail.capacity() * size_of::<T>()
+        self.items.capacity() * size_of::<(u32, T)>() + self.tail_length.max(self.tail.capacity()) * size_of::<T>()
     }
 
     /// Gives back memory that is not in use.
@@ -196,6 +199,20 @@ mod tests {
             1 => Just(Edit::Redo),
         ];
         prop::collection::vec(edit, 0..60)
+    }
+
+    #[test]
+    fn a_delta_holds_no_more_than_it_said() {
+        let mut array = Journaled::new(vec![0_u64; 100]);
+        array.begin();
+        (0..1000).for_each(|item| drop(array.push(item)));
+        let mut delta = array.finish();
+        assert_eq!(delta.bytes(), 1000 * size_of::<u64>());
+        for is_undone in [true, false, true] {
+            array.swap(&mut delta);
+            assert_eq!(delta.bytes(), 1000 * size_of::<u64>());
+            assert_eq!(delta.tail.capacity(), if is_undone { 1000 } else { 0 });
+        }
     }
 
     proptest! {

@@ -74,7 +74,7 @@ pub struct StrokeReceipt {
     pub lock_skipped: Option<LockSkipped>,
     /// Wall time of all moves by stage.
     pub seconds: MoveSeconds,
-    /// Bytes that undo holds for this stroke.
+    /// Bytes that undo holds for this stroke, with what it will need for making it again.
     pub undo_bytes: usize,
     /// Strokes that undo forgot, oldest first, to make room for this one.
     pub forgotten_strokes: usize,
@@ -150,6 +150,6 @@ pub struct History {
     pub redoable: usize,
     /// Strokes that can no longer be undone, because the byte budget made undo forget them. The log still has them.
     pub forgotten: usize,
-    /// Bytes held.
+    /// Bytes held, with what redo will need for strokes that are not undone yet: undo and redo change nothing in it.
     pub bytes: usize,
 }

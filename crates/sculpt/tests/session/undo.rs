@@ -1,4 +1,4 @@
-use isochore_sculpt::session::SessionOptions;
+use isochore_sculpt::session::{History, SessionOptions};
 
 use super::*;
 
@@ -90,4 +90,27 @@ fn memory_of_a_stroke_is_in_proportion_to_what_it_touched() {
     // Position and offset, the f32 copy and the normal, each with a number; and a rim of normals that is thinner on finer meshes.
     let [coarse, fine] = [3, 5].map(bytes);
     assert!(fine < 104.0 + 16.0 && fine < coarse, "{coarse} {fine}");
+}
+
+#[test]
+fn what_undo_holds_stays_within_its_budget() {
+    let stroke = |session: &mut Session, index: i32| {
+        make(session, &brush(), &refined(0.05), &arc(0.4 * f64::from(index), 6));
+        session.history().bytes
+    };
+    let most = 3 * stroke(&mut ball(), 0);
+    let options = SessionOptions { undo_bytes: most, ..SessionOptions::default() };
+    let mut session = Session::open(icosphere(1.0, 3), options).unwrap();
+    (0..8).for_each(|index| assert!(stroke(&mut session, index) <= most));
+    let History { undoable, forgotten, bytes, .. } = session.history();
+    assert!(undoable >= 2 && forgotten >= 1, "{:?}", session.history());
+    // Undo has to hold what was inserted, and redo gives it back: both are in the number from the start.
+    let before = snapshot(&session);
+    for step in [Session::undo, Session::redo, Session::undo] {
+        while step(&mut session).unwrap() {
+            assert_eq!(session.history().bytes, bytes);
+        }
+    }
+    while session.redo().unwrap() {}
+    assert_eq!(snapshot(&session), before);
 }
