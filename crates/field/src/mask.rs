@@ -55,6 +55,11 @@ impl Mask {
         !self.holds() && self.mirrors.is_empty()
     }
 
+    /// Whether a point is held so that no stroke moves it.
+    pub fn is_held(&self, point: DVec3) -> bool {
+        self.holds() && self.symmetric_factor(&self.mirrors, point).value == 0.0
+    }
+
     /// Whether anything is held, mirrors apart.
     pub(crate) fn holds(&self) -> bool {
         !self.pins.is_empty() || self.vertices.is_some()

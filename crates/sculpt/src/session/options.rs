@@ -10,11 +10,11 @@ pub struct SessionOptions {
     /// What the log says the mesh is: by default the mesh file `target`. The mesh that the session is opened on is this target as
     /// it stands in the world.
     pub target: Target,
-    /// What holds all strokes back, in the coordinates of the mesh as opened.
+    /// What holds all strokes back, in the coordinates of the mesh as opened. Edges that it holds are not edited either.
     pub mask: recipe::Mask,
     /// Travel in one time step, as the recipe's `integrate.step`.
     pub step: f64,
-    /// Bytes that undo and redo may hold. The oldest strokes are forgotten first; the last one is always kept.
+    /// Bytes that undo and redo may hold, whatever is undone. The oldest strokes are forgotten first; the last one is always kept.
     pub undo_bytes: usize,
     /// Whether a small displacement of what a stroke has moved gives back the volume of the mesh as opened when the stroke ends. It is
     /// kept apart from the flow, and an open surface has no volume to give back.

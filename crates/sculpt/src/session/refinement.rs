@@ -5,6 +5,7 @@ mod flips;
 mod splits;
 
 use glam::DVec3;
+use isochore_field::Mask;
 use isochore_mesh::{Aabb, NONE};
 use rayon::prelude::*;
 
@@ -83,6 +84,7 @@ pub(super) struct Pass<'a> {
     pub(super) stroke: &'a mut ActiveStroke,
     /// By vertex of the mesh as opened, whether its edges stay.
     pub(super) frozen: &'a [bool],
+    pub(super) mask: Option<&'a Mask>,
     /// Triangles that were edited, in the order in which that happened, some more than once.
     pub(super) edited: &'a mut Vec<u32>,
     pub(super) done: &'a mut MoveReceipt,
@@ -92,7 +94,9 @@ impl Pass<'_> {
     /// Splits edges that are too long of those of `triangles` that the last segment of the way may touch.
     pub(super) fn resolve(&mut self, triangles: &[u32], options: &InteractiveRefinement, segment: &Segment) {
         let limits = options.limits(&self.stroke.tool);
-        let may_touch = |corners: [DVec3; 3]| segment.may_touch(Aabb::of(corners));
+        let mask = self.mask;
+        let is_held = |corners: [DVec3; 3]| (0..3).all(|side| is_held(mask, [corners[side], corners[(side + 1) % 3]]));
+        let may_touch = |corners: [DVec3; 3]| segment.may_touch(Aabb::of(corners)) && !is_held(corners);
         let surveyed =
             survey(self.surface, triangles, &Limits { shortest2: 0.0, flip: false, ..limits }, Some(&may_touch));
         self.split(surveyed.long, options, &limits, Some(&may_touch));
@@ -118,19 +122,25 @@ impl Pass<'_> {
         }
     }
 
-    /// The half-edge between two vertices, if it is there, no end of it is frozen, and no ball keeps it.
+    /// The half-edge between two vertices, if it is there, no end of it is frozen, no ball keeps it, and no mask holds it.
     fn editable(&self, [a, b]: [u32; 2], options: &InteractiveRefinement) -> Option<u32> {
         let is_frozen = |vertex: u32| self.frozen.get(vertex as usize).copied().unwrap_or(false);
         let topology = &self.surface.topology;
         if is_frozen(a) || is_frozen(b) || topology.leaving(a) == NONE || topology.leaving(b) == NONE {
             return None;
         }
-        if !options.keep.is_empty() && options.is_kept([a, b].map(|vertex| self.surface.position(vertex))) {
+        let ends = [a, b].map(|vertex| self.surface.position(vertex));
+        if !options.keep.is_empty() && options.is_kept(ends) || is_held(self.mask, ends) {
             return None;
         }
         // At the boundary the edge has a half-edge in one direction only.
         topology.half_edge(a, b).or_else(|| topology.half_edge(b, a))
     }
+}
+
+/// Whether a mask holds an edge: its ends, and what lies between them.
+fn is_held(mask: Option<&Mask>, [a, b]: [DVec3; 2]) -> bool {
+    mask.is_some_and(|mask| [a, b, 0.5 * (a + b)].iter().all(|&point| mask.is_held(point)))
 }
 
 type MayTouch<'a> = &'a (dyn Fn([DVec3; 3]) -> bool + Sync);

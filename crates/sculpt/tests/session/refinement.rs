@@ -1,5 +1,8 @@
 use isochore_mesh::{TriMesh, primitives::box_mesh};
-use isochore_sculpt::session::{OpenError, SessionError, StrokeReceipt};
+use isochore_sculpt::{
+    recipe::{Mask, VertexWeights},
+    session::{OpenError, SessionError, StrokeReceipt},
+};
 
 use super::*;
 
@@ -121,6 +124,38 @@ fn what_is_kept_or_frozen_stays() {
     }
     assert!(stayed > 100 && session.vertex_count() > session.opened().positions.len());
     assert_sound(&session);
+}
+
+#[test]
+fn a_mask_holds_edges_as_well_as_vertices() {
+    let session = |weights: Vec<f64>| {
+        let mask = Mask { vertices: Some(VertexWeights::Values(weights)), fade: Some(0.2), ..Mask::default() };
+        Session::open(icosphere(1.0, 3), SessionOptions { mask, ..SessionOptions::default() }).unwrap()
+    };
+    let fine = InteractiveRefinement { longest: Some(0.03), collapse: 0.4, ..InteractiveRefinement::default() };
+    let fine = StrokeOptions { refine: Some(fine) };
+    let count = ball().vertex_count();
+    let mut held = session(vec![1.0; count]);
+    let before = snapshot(&held);
+    let receipt = stroke(&mut held, &brush(), fine.clone(), &press(0.3));
+    assert_eq!((receipt.touched_vertices, receipt.inserted_vertices, receipt.flipped_edges), (0, 0, 0));
+    assert_eq!(snapshot(&held), before);
+
+    // Half of what the brush reaches: triangles whose corners are all held stay as they are, and others are refined.
+    let is_held = |p: &DVec3| p.x > 0.2;
+    let mut half = session(ball().positions().iter().map(|p| f64::from(is_held(p))).collect());
+    let receipt = stroke(&mut half, &brush(), fine, &press(0.3));
+    assert!(receipt.inserted_vertices > 100 && receipt.touched_vertices > 0, "{receipt:?}");
+    let opened = half.opened().clone();
+    let mut stayed = 0;
+    for (triangle, corners) in (0_u32..).zip(&opened.triangles) {
+        if corners.iter().all(|&vertex| is_held(&opened.positions[vertex as usize])) {
+            assert_eq!(half.triangle(triangle), Some(*corners));
+            stayed += 1;
+        }
+    }
+    assert!(stayed > 100, "{stayed}");
+    assert_sound(&half);
 }
 
 #[test]

@@ -56,6 +56,9 @@ impl Pass<'_> {
             return false;
         }
         let [old, new] = [removed, kept].map(|vertex| surface.position(vertex));
+        if self.mask.is_some_and(|mask| mask.is_held(old)) {
+            return false;
+        }
         topology.fan(removed).all(|leaving| {
             let [b, c] = [topology.end(leaving), topology.start(previous_half_edge(leaving))];
             if b == kept || c == kept {
