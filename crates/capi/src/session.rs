@@ -357,7 +357,7 @@ pub unsafe extern "C" fn isochore_session_changed(
     })
 }
 
-/// Keeps the edges at some vertices of the mesh as opened from being split, collapsed or flipped from now on, and frees all others.
+/// Keeps the edges at some vertices, inserted ones included, from being split, collapsed or flipped from now on, and frees all others.
 ///
 /// # Safety
 /// `session` is a handle; there are `count` vertices.
@@ -370,12 +370,7 @@ pub unsafe extern "C" fn isochore_session_freeze_edges(
     guarded(|| {
         // SAFETY: as the caller promises.
         let (session, vertices) = unsafe { (reference_mut("session", session)?, array("vertices", vertices, count)?) };
-        let opened = session.session.opened().positions.len();
-        if let Some(beyond) = vertices.iter().find(|vertex| **vertex as usize >= opened) {
-            return Err(Failure::argument(format!("{beyond} is none of the {opened} vertices of the mesh as opened")));
-        }
-        session.session.freeze_edges(vertices);
-        Ok(())
+        session.session.freeze_edges(vertices).map_err(Failure::argument)
     })
 }
 

@@ -172,7 +172,7 @@ static void ask(IsochoreSession *session, IsochoreTool *tool) {
 
 static void make_faults(IsochoreSession *session, IsochoreTool *tool) {
     const double nowhere[] = {0, INFINITY, 0}, turn[] = {0, 0, 0, NAN};
-    const uint32_t beyond = 8;
+    const uint32_t beyond = 1u << 31;
     IsochoreOrigin origin;
     IsochoreMesh *mesh = NULL;
     CHECK(isochore_session_move_to(session, nowhere, NULL, 1e9) != ISOCHORE_STATUS_OK);

@@ -67,6 +67,14 @@ impl<T: Copy> Journaled<T> {
         self.items[index as usize] = item;
     }
 
+    /// Replaces item `index` and records nothing: what undo leads to keeps it, unless the item was set since recording began.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn amend(&mut self, index: u32, item: T) {
+        self.items[index as usize] = item;
+    }
+
     /// Appends an item and returns its index.
     pub fn push(&mut self, item: T) -> u32 {
         self.items.push(item);
@@ -205,7 +213,7 @@ mod tests {
     fn a_delta_holds_no_more_than_it_said() {
         let mut array = Journaled::new(vec![0_u64; 100]);
         array.begin();
-        (0..1000).for_each(|item| drop(array.push(item)));
+        (0..1000).for_each(|item| assert_eq!(array.push(item), 100 + item as u32));
         let mut delta = array.finish();
         assert_eq!(delta.bytes(), 1000 * size_of::<u64>());
         for is_undone in [true, false, true] {

@@ -240,7 +240,7 @@ class Session:
         """
 
     def freeze_edges(self, vertices: ArrayLike) -> None:
-        """Keeps the edges at these vertices (N,) of the mesh as opened from being split, collapsed or flipped, and frees all others."""
+        """Keeps the edges at these vertices (N,), inserted ones included, from being split, collapsed or flipped, and frees all others."""
 
     def move_to(
         self, at: ArrayLike, *, rotate: ArrayLike = ..., time: float = 0.0

@@ -168,20 +168,13 @@ impl Session {
         self.change(py, |session| session.redo().map_err(Failure::input))
     }
 
-    /// Keeps the edges at these vertices of the mesh as opened from being split, collapsed or flipped, and frees all others.
+    /// Keeps the edges at these vertices, inserted ones included, from being split, collapsed or flipped, and frees all others.
     fn freeze_edges(&self, py: Python<'_>, vertices: &Bound<'_, PyAny>) -> Result<(), Failure> {
         let vertices = indices("vertices", vertices)?;
         let vertices = numbers("vertices", &vertices)?.iter().map(|&vertex| index("vertices", vertex));
         let vertices: Vec<u32> = vertices.collect::<Result<_, _>>()?;
         self.change(py, |session| {
-            let count = session.opened().positions.len();
-            if let Some(beyond) = vertices.iter().find(|vertex| **vertex as usize >= count) {
-                return Err(Failure::Argument(format!(
-                    "vertices: {beyond} is none of the {count} of the mesh as opened"
-                )));
-            }
-            session.freeze_edges(&vertices);
-            Ok(())
+            session.freeze_edges(&vertices).map_err(|error| Failure::Argument(format!("vertices: {error}")))
         })
     }
 

@@ -101,8 +101,6 @@ pub struct Session {
     /// None where the surface is open.
     opened_volume: Option<f64>,
     mask: Option<Arc<field::Mask>>,
-    /// By vertex of the mesh as opened, whether its edges stay; empty where all may be edited.
-    frozen: Vec<bool>,
     stroke: Option<ActiveStroke>,
     steps: Steps,
 }
@@ -128,17 +126,7 @@ impl Session {
         let loose =
             (0..surface.topology.vertex_count() as u32).filter(|&vertex| surface.topology.leaving(vertex) == NONE);
         let loose = loose.collect();
-        Ok(Self {
-            options,
-            surface,
-            loose,
-            opened_bounds,
-            opened_volume,
-            mask,
-            frozen: Vec::new(),
-            stroke: None,
-            steps: Steps::default(),
-        })
+        Ok(Self { options, surface, loose, opened_bounds, opened_volume, mask, stroke: None, steps: Steps::default() })
     }
 
     /// The mesh as it was opened.
@@ -300,18 +288,19 @@ impl Session {
         self.stroke.is_some()
     }
 
-    /// Keeps the edges at some vertices of the mesh as opened from being split, collapsed or flipped from now on, and frees all
-    /// others. Numbers that are no such vertices are ignored. What inserted vertices hold already stays.
-    pub fn freeze_edges(&mut self, vertices: &[u32]) {
-        self.frozen.clear();
-        if !vertices.is_empty() {
-            self.frozen.resize(self.surface.opened.positions.len(), false);
-            for &vertex in vertices {
-                if let Some(frozen) = self.frozen.get_mut(vertex as usize) {
-                    *frozen = true;
-                }
-            }
+    /// Keeps the edges at some vertices, inserted ones included, from being split, collapsed or flipped from now on, and frees all
+    /// others. Vertices that were removed are passed over.
+    ///
+    /// # Errors
+    /// [`SessionError::NoVertex`] for a number of [`vertex_count`](Self::vertex_count) or more; then all stays as it was.
+    pub fn freeze_edges(&mut self, vertices: &[u32]) -> Result<(), SessionError> {
+        let count = self.vertex_count();
+        if let Some(&vertex) = vertices.iter().find(|&&vertex| vertex as usize >= count) {
+            return Err(SessionError::NoVertex { vertex, count });
         }
+        let there: Vec<u32> = vertices.iter().copied().filter(|&vertex| self.is_alive(vertex)).collect();
+        self.surface.freeze(there.into_iter());
+        Ok(())
     }
 
     /// What a renderer draws, in place. Borrowed as long as the session is not changed; see [`RenderBuffers::generation`] for hosts

@@ -64,16 +64,11 @@ impl Session {
         Ok(Self { session })
     }
 
-    /// Keeps the edges at some vertices of the mesh as opened from being split, collapsed or flipped from now on, and frees all
+    /// Keeps the edges at some vertices, inserted ones included, from being split, collapsed or flipped from now on, and frees all
     /// others.
     #[wasm_bindgen(js_name = freezeEdges)]
     pub fn freeze_edges(&mut self, vertices: &[u32]) -> Result<(), JsError> {
-        let opened = self.session.opened().positions.len();
-        if let Some(beyond) = vertices.iter().find(|vertex| **vertex as usize >= opened) {
-            return Err(thrown(format!("{beyond} is none of the {opened} vertices of the mesh as opened")));
-        }
-        self.session.freeze_edges(vertices);
-        Ok(())
+        self.session.freeze_edges(vertices).map_err(thrown)
     }
 
     /// Begins a stroke; nothing moves before the second pose.

@@ -34,7 +34,7 @@ impl Session {
         let mut near = surface.triangles_near(&segment);
         done.seconds.select += lap();
         if let Some(options) = &refine {
-            let mut pass = Pass { surface, stroke, frozen: &self.frozen, mask, edited: &mut edited, done };
+            let mut pass = Pass { surface, stroke, mask, edited: &mut edited, done };
             pass.resolve(&near, options, &segment);
             near.extend(&edited);
         }
@@ -62,7 +62,7 @@ impl Session {
         let mut changed = surface.triangles_at(&moved, &near);
         stroke.note_moved(&changed, surface.corners.items().len());
         if let Some(options) = refine.as_ref().filter(|_| overflow.is_none()) {
-            let mut pass = Pass { surface, stroke, frozen: &self.frozen, mask, edited: &mut edited, done };
+            let mut pass = Pass { surface, stroke, mask, edited: &mut edited, done };
             pass.improve(&changed, options);
         }
         if !edited.is_empty() {

@@ -49,9 +49,8 @@ impl Surface {
         let gained = self.volume_under(half_edge, position);
 
         let split = self.topology.split(half_edge);
-        self.positions.put(split.vertex, position);
         let ends = [from, to].map(|corner| self.offsets.get(self.render.get(corner).vertex));
-        self.offsets.put(split.vertex, 0.5 * (ends[0] + ends[1]));
+        self.insert_vertex(split.vertex, position, 0.5 * (ends[0] + ends[1]));
         let inserted = self.insert_corner(split.vertex, [from, to], near);
         let (mut corners, patch) = (self.corners.get(near), self.patches.get(near));
         let apex = corners[(side + 2) % 3];

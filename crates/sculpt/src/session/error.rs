@@ -58,6 +58,14 @@ pub enum SessionError {
     /// A length or share of the refinement is out of range.
     #[error("refinement: {0}")]
     Refinement(&'static str),
+    /// No vertex ever had this number.
+    #[error("{vertex} is none of the {count} vertices")]
+    NoVertex {
+        /// The number.
+        vertex: u32,
+        /// How many vertices there are, removed ones included.
+        count: usize,
+    },
     /// A coordinate would leave the range of numbers.
     #[error("vertex {vertex} would be carried out of the range of numbers")]
     Overflow {

@@ -82,8 +82,6 @@ const MOST_COLLAPSE: f64 = 0.4;
 pub(super) struct Pass<'a> {
     pub(super) surface: &'a mut Surface,
     pub(super) stroke: &'a mut ActiveStroke,
-    /// By vertex of the mesh as opened, whether its edges stay.
-    pub(super) frozen: &'a [bool],
     pub(super) mask: Option<&'a Mask>,
     /// Triangles that were edited, in the order in which that happened, some more than once.
     pub(super) edited: &'a mut Vec<u32>,
@@ -124,9 +122,9 @@ impl Pass<'_> {
 
     /// The half-edge between two vertices, if it is there, no end of it is frozen, no ball keeps it, and no mask holds it.
     fn editable(&self, [a, b]: [u32; 2], options: &InteractiveRefinement) -> Option<u32> {
-        let is_frozen = |vertex: u32| self.frozen.get(vertex as usize).copied().unwrap_or(false);
         let topology = &self.surface.topology;
-        if is_frozen(a) || is_frozen(b) || topology.leaving(a) == NONE || topology.leaving(b) == NONE {
+        let is_fixed = |vertex: u32| topology.leaving(vertex) == NONE || self.surface.is_frozen(vertex);
+        if is_fixed(a) || is_fixed(b) {
             return None;
         }
         let ends = [a, b].map(|vertex| self.surface.position(vertex));

@@ -42,6 +42,10 @@ pub(super) struct Surface {
     pub(super) positions: Journaled<DVec3>,
     /// What the locks of the strokes add to that for the eyes of the host.
     pub(super) offsets: Journaled<DVec3>,
+    /// By vertex the number of the call that froze its edges last, zero for none.
+    frozen: Journaled<u32>,
+    /// Calls so far that froze edges. Only what the last one named is frozen: undo may bring back vertices that earlier ones did.
+    freezes: u32,
     /// By triangle its render vertices, all zero where it was removed: the index buffer itself.
     pub(super) corners: Journaled<[u32; 3]>,
     pub(super) patches: Journaled<Patch>,
@@ -81,6 +85,7 @@ pub(super) struct SurfaceDelta {
     topology: EditDelta,
     positions: Delta<DVec3>,
     offsets: Delta<DVec3>,
+    frozen: Delta<u32>,
     corners: Delta<[u32; 3]>,
     patches: Delta<Patch>,
     render: Delta<RenderVertex>,
@@ -109,6 +114,8 @@ impl Surface {
             topology,
             positions: Journaled::new(opened.positions.clone()),
             offsets: Journaled::new(vec![DVec3::ZERO; opened.positions.len()]),
+            frozen: Journaled::new(vec![0; opened.positions.len()]),
+            freezes: 0,
             render_positions: Journaled::new(render.iter().map(position).collect()),
             corners: Journaled::new(corners),
             has_hard_edges: patches.iter().any(|patch| patch.hard != 0),
@@ -132,6 +139,7 @@ impl Surface {
         surface.topology.reserve(spare(surface.topology.vertex_count()), triangles);
         surface.positions.reserve(spare(surface.positions.items().len()));
         surface.offsets.reserve(spare(surface.positions.items().len()));
+        surface.frozen.reserve(spare(surface.positions.items().len()));
         surface.corners.reserve(triangles);
         surface.patches.reserve(triangles);
         surface.tree.reserve(triangles);
@@ -173,10 +181,29 @@ impl Surface {
         triangle.is_alive().then(|| triangle.vertices.map(|vertex| self.shown(vertex)))
     }
 
+    /// Freezes the edges at `vertices`, and frees all others.
+    pub(super) fn freeze(&mut self, vertices: impl Iterator<Item = u32>) {
+        self.freezes = self.freezes.wrapping_add(1).max(1);
+        vertices.for_each(|vertex| self.frozen.amend(vertex, self.freezes));
+    }
+
+    /// Takes in a vertex that a split inserted, with its edges free.
+    pub(super) fn insert_vertex(&mut self, vertex: u32, position: DVec3, offset: DVec3) {
+        self.positions.put(vertex, position);
+        self.offsets.put(vertex, offset);
+        self.frozen.put(vertex, 0);
+    }
+
+    /// Whether the edges at a vertex stay.
+    pub(super) fn is_frozen(&self, vertex: u32) -> bool {
+        self.freezes != 0 && self.frozen.get(vertex) == self.freezes
+    }
+
     pub(super) fn begin(&mut self) -> usize {
         self.inserted.clear();
         self.positions.begin();
         self.offsets.begin();
+        self.frozen.begin();
         self.corners.begin();
         self.patches.begin();
         self.render.begin();
@@ -190,6 +217,7 @@ impl Surface {
             topology: self.topology.finish(alive),
             positions: self.positions.finish(),
             offsets: self.offsets.finish(),
+            frozen: self.frozen.finish(),
             corners: self.corners.finish(),
             patches: self.patches.finish(),
             render: self.render.finish(),
@@ -210,6 +238,7 @@ impl Surface {
                 self.topology.swap(&mut delta.topology);
                 self.positions.swap(&mut delta.positions);
                 self.offsets.swap(&mut delta.offsets);
+                self.frozen.swap(&mut delta.frozen);
             },
             || {
                 self.corners.swap(&mut delta.corners);
@@ -393,6 +422,7 @@ impl SurfaceDelta {
         self.topology.bytes()
             + self.positions.bytes()
             + self.offsets.bytes()
+            + self.frozen.bytes()
             + self.corners.bytes()
             + self.patches.bytes()
             + self.render.bytes()
@@ -404,6 +434,7 @@ impl SurfaceDelta {
         self.topology.shrink();
         self.positions.shrink();
         self.offsets.shrink();
+        self.frozen.shrink();
         self.corners.shrink();
         self.patches.shrink();
         self.render.shrink();

@@ -55,8 +55,9 @@ impl Checked {
             }
             35 => assert_eq!(self.session.log().strokes.len(), self.done.len()),
             36 => {
-                let frozen: Vec<u32> = (0..self.numbers.below(3)).map(|_| self.numbers.below(300) as u32).collect();
-                self.session.freeze_edges(&frozen);
+                let count = self.session.vertex_count();
+                let frozen: Vec<u32> = (0..self.numbers.below(3)).map(|_| self.numbers.below(count) as u32).collect();
+                self.session.freeze_edges(&frozen).unwrap();
             }
             37 => drop(self.session.move_to(&Pose::at(DVec3::NAN), self.time).unwrap_err()),
             _ => assert!(self.session.closest_point(self.pose.translation).is_some()),

@@ -110,7 +110,7 @@ fn what_is_kept_or_frozen_stays() {
     let mut session = ball();
     let north: Vec<u32> =
         (0..session.vertex_count() as u32).filter(|&v| session.positions()[v as usize].z > 0.0).collect();
-    session.freeze_edges(&north);
+    session.freeze_edges(&north).unwrap();
     let at = |session: &Session, triangle: u32| session.triangle(triangle);
     let before: Vec<_> = (0..session.triangle_count() as u32).map(|triangle| at(&session, triangle)).collect();
     make(&mut session, &brush(), &refined(0.05), &press(0.3));
@@ -124,6 +124,70 @@ fn what_is_kept_or_frozen_stays() {
     }
     assert!(stayed > 100 && session.vertex_count() > session.opened().positions.len());
     assert_sound(&session);
+}
+
+#[test]
+fn inserted_vertices_can_be_frozen_and_are_while_they_are_there() {
+    let count = ball().vertex_count() as u32;
+    let edits = |session: &mut Session, longest: f64| {
+        let receipt = stroke(session, &rod(), refined(longest), &press(0.3));
+        [receipt.inserted_vertices, receipt.removed_vertices, receipt.flipped_edges]
+    };
+    let mut session = ball();
+    assert!(edits(&mut session, 0.1)[0] > 100);
+    let reached: Vec<u32> = session.vertices().collect();
+    let beyond = session.vertex_count() as u32;
+    let refused = session.freeze_edges(&[0, beyond]).unwrap_err();
+    assert_eq!(refused, SessionError::NoVertex { vertex: beyond, count: beyond as usize });
+    // What is refused freezes nothing, and what is frozen is not edited.
+    assert_ne!(edits(&mut session, 0.07), [0; 3]);
+    assert!(session.undo().unwrap());
+    session.freeze_edges(&reached).unwrap();
+    assert_eq!(edits(&mut session, 0.07), [0; 3]);
+
+    // The vertices are frozen again when they come back, but not others that get their numbers.
+    assert!(session.undo().unwrap() && session.undo().unwrap());
+    assert!(session.redo().unwrap());
+    assert_eq!(edits(&mut session, 0.07), [0; 3]);
+    assert!(session.undo().unwrap() && session.undo().unwrap());
+    let (mut fresh, inserted) = (ball(), |session: &Session| session.vertices().filter(|&v| v >= count).count());
+    for session in [&mut session, &mut fresh] {
+        session.freeze_edges(&(0..10).collect::<Vec<u32>>()).unwrap();
+        assert!(edits(session, 0.1)[0] > 100);
+        assert_ne!(edits(session, 0.05), [0; 3]);
+    }
+    assert_eq!(snapshot(&session), snapshot(&fresh));
+    assert!(inserted(&session) > 300, "{}", inserted(&session));
+}
+
+#[test]
+fn undone_and_canceled_strokes_keep_what_is_frozen() {
+    // A canceled stroke takes numbers of vertices that were undone, and gives them back.
+    let edits = |is_hesitant: bool| {
+        let mut session = ball();
+        make(&mut session, &brush(), &refined(0.1), &press(0.3));
+        let all: Vec<u32> = session.vertices().collect();
+        session.freeze_edges(&all).unwrap();
+        assert!(session.undo().unwrap());
+        if is_hesitant {
+            session.begin_stroke(&rod(), refined(0.08)).unwrap();
+            press(0.2).iter().for_each(|pose| assert!(session.move_to(pose, 0.0).is_ok()));
+            session.cancel_stroke().unwrap();
+        }
+        assert!(session.redo().unwrap());
+        stroke(&mut session, &brush(), refined(0.05), &press(0.3)).inserted_vertices
+    };
+    assert_eq!([false, true].map(edits), [0, 0]);
+
+    // A later call frees what it does not name, also what is undone meanwhile.
+    let mut session = ball();
+    make(&mut session, &brush(), &refined(0.1), &press(0.3));
+    let all: Vec<u32> = session.vertices().collect();
+    session.freeze_edges(&all).unwrap();
+    assert!(session.undo().unwrap());
+    session.freeze_edges(&[]).unwrap();
+    assert!(session.redo().unwrap());
+    assert!(stroke(&mut session, &brush(), refined(0.05), &press(0.3)).inserted_vertices > 0);
 }
 
 #[test]

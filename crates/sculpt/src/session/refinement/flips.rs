@@ -59,10 +59,7 @@ impl Pass<'_> {
         let twin = topology.twin(half_edge);
         let [a, b] = [half_edge, twin].map(|side| surface.position(topology.start(side)));
         let [c, d] = [half_edge, twin].map(|side| surface.position(topology.start(previous_half_edge(side))));
-        let is_frozen = |side: u32| {
-            let apex = topology.start(previous_half_edge(side));
-            self.frozen.get(apex as usize).copied().unwrap_or(false)
-        };
+        let is_frozen = |side: u32| surface.is_frozen(topology.start(previous_half_edge(side)));
         if c.distance_squared(d) > limits.longest2 || is_frozen(half_edge) || is_frozen(twin) {
             return false;
         }
