@@ -88,7 +88,8 @@ fn reach_of(share: f64) -> f64 {
 struct Run {
     triangles: usize,
     opened_volume: f64,
-    moves: Vec<MoveReceipt>,
+    /// Of each move: by the clock, with taking what has changed, and what it tells of itself.
+    moves: Vec<(f64, MoveReceipt)>,
     /// Of the processor, a move on average.
     cpu_seconds: f64,
     receipt: StrokeReceipt,
@@ -112,11 +113,12 @@ impl Run {
         let cpu = cpu_seconds();
         let mut moves = Vec::new();
         for (index, pose) in recorded(reach).iter().enumerate() {
+            let begin = Instant::now();
             let receipt = session.move_to(pose, index as f64 / 60.0).expect("a short way");
-            if index > 0 {
-                moves.push(receipt);
-            }
             std::hint::black_box(session.take_changes());
+            if index > 0 {
+                moves.push((begin.elapsed().as_secs_f64(), receipt));
+            }
         }
         let cpu_seconds = (cpu_seconds() - cpu) / MOVES as f64;
         let receipt = session.end_stroke().expect("a stroke");
@@ -143,22 +145,24 @@ impl Run {
     }
 
     fn median_seconds(&self) -> f64 {
-        self.percentile(0.5, |receipt| receipt.seconds.total())
+        self.percentile(0.5, |(seconds, _)| *seconds)
     }
 
-    fn percentile(&self, share: f64, figure: impl Fn(&MoveReceipt) -> f64) -> f64 {
+    fn percentile(&self, share: f64, figure: impl Fn(&(f64, MoveReceipt)) -> f64) -> f64 {
         let mut figures: Vec<f64> = self.moves.iter().map(figure).collect();
         figures.sort_unstable_by(f64::total_cmp);
         figures[(share * (figures.len() - 1) as f64) as usize]
     }
 
     fn report(&self) {
-        let stage = |figure: fn(&MoveReceipt) -> f64| format!("{:.2}", 1e3 * self.percentile(0.5, figure));
+        let stage = |figure: fn(&MoveReceipt) -> f64| {
+            format!("{:.2}", 1e3 * self.percentile(0.5, |(_, receipt)| figure(receipt)))
+        };
         print_row([
             &self.triangles.to_string(),
-            &format!("{:.0}", self.percentile(0.5, |receipt| receipt.moved_vertices as f64)),
+            &format!("{:.0}", self.percentile(0.5, |(_, receipt)| receipt.moved_vertices as f64)),
             &format!("{:.2}", 1e3 * self.median_seconds()),
-            &format!("{:.2}", 1e3 * self.percentile(0.99, |receipt| receipt.seconds.total())),
+            &format!("{:.2}", 1e3 * self.percentile(0.99, |(seconds, _)| *seconds)),
             &format!("{:.2}", 1e3 * self.cpu_seconds),
             &stage(|receipt| receipt.seconds.select),
             &stage(|receipt| receipt.seconds.flow),
