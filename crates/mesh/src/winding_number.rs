@@ -87,18 +87,25 @@ impl WindingNumber {
     /// However a triangle lies, it covers no more of the sphere than its area over its squared distance.
     pub(crate) fn is_below_half(&self, center: DVec3, reach: f64) -> bool {
         let (center, reach) = (self.bvh.frame().inward(center), reach * self.bvh.frame().scale());
+        let gap_to = |middle: DVec3, radius: f64| (middle - center).length() - radius - reach;
         let mut angle = 0.0;
         let mut stack = Vec::with_capacity(self.bvh.stack_capacity());
         stack.push(0);
         while let Some(index) = stack.pop() {
             let (node, cluster) = (&self.bvh.nodes()[index as usize], &self.clusters[index as usize]);
-            let gap = (cluster.center - center).length() - cluster.radius - reach;
-            if gap > cluster.radius || (node.is_leaf() && gap > 0.0) {
+            let gap = gap_to(cluster.center, cluster.radius);
+            if gap > cluster.radius {
                 angle += cluster.area / (gap * gap);
-            } else if !node.is_leaf() {
-                stack.extend([node.first, node.first + 1]);
+            } else if node.is_leaf() {
+                for slot in node.first..node.first + node.count {
+                    let corners = self.bvh.corners(slot);
+                    let Cluster { center, area, .. } = Cluster::of_triangle(&corners);
+                    let radius = corners.into_iter().map(|corner| corner.distance(center)).fold(0.0, f64::max);
+                    let gap = gap_to(center, radius);
+                    angle += if gap > 0.0 { area / (gap * gap) } else { f64::INFINITY };
+                }
             } else {
-                return false;
+                stack.extend([node.first, node.first + 1]);
             }
             // Half of the sphere, and a little less for rounding.
             if angle > 1.999 * PI {
