@@ -43,13 +43,21 @@ fn check_attributes(mesh: &TriMesh) -> Result<(), OpenError> {
     Ok(())
 }
 
-/// Whether two corners of the mesh, by triangle and side, carry the same attributes to the bit.
+/// Cosine of the angle up to which two shading normals are one, a fortieth of a degree. Larger levels creases that were set by hand;
+/// smaller breaks the shading where a file rounds its normals, to four digits or the last bit.
+const SAME_NORMAL: f64 = 1.0 - 1e-7;
+
+fn is_same_normal(one: Vec3, other: Vec3) -> bool {
+    let (a, b) = (one.as_dvec3(), other.as_dvec3());
+    one == other || a.dot(b) > SAME_NORMAL * a.length() * b.length()
+}
+
+/// Whether two corners of the mesh, by triangle and side, carry the same attributes: normals but for rounding, others to the bit.
 pub(super) fn is_same_corner(mesh: &TriMesh, [one, other]: [(u32, usize); 2]) -> bool {
     let [(a, i), (b, j)] = [one, other].map(|(triangle, side)| (triangle as usize, side));
     let corner = &mesh.corner;
-    let bits = |normal: Vec3| normal.to_array().map(f32::to_bits);
     corner.uvs.iter().all(|set| set[a][i].to_array().map(f64::to_bits) == set[b][j].to_array().map(f64::to_bits))
-        && (corner.normals.is_empty() || bits(corner.normals[a][i]) == bits(corner.normals[b][j]))
+        && (corner.normals.is_empty() || is_same_normal(corner.normals[a][i], corner.normals[b][j]))
         && (corner.colors.is_empty()
             || corner.colors[a][i].to_array().map(f64::to_bits) == corner.colors[b][j].to_array().map(f64::to_bits))
 }
@@ -98,12 +106,13 @@ fn hard_edges(mesh: &TriMesh, topology: &EditMesh, triangle: u32) -> u8 {
     if normals.is_empty() {
         return 0;
     }
-    let normal = |half_edge: u32| normals[half_edge as usize / 3][half_edge as usize % 3].to_array().map(f32::to_bits);
+    let normal = |half_edge: u32| normals[half_edge as usize / 3][half_edge as usize % 3];
     let is_hard = |side: &u32| {
         let half_edge = 3 * triangle + side;
         let twin = topology.twin(half_edge);
         let ahead = |half_edge: u32| normal(next_half_edge(half_edge));
-        twin != NONE && (normal(half_edge) != ahead(twin) || ahead(half_edge) != normal(twin))
+        let is_same = |[one, other]: [Vec3; 2]| is_same_normal(one, other);
+        twin != NONE && ![[normal(half_edge), ahead(twin)], [ahead(half_edge), normal(twin)]].into_iter().all(is_same)
     };
     (0..3).filter(is_hard).fold(0, |bits, side| bits | 1 << side)
 }

@@ -1,9 +1,13 @@
-use glam::{DVec2, DVec4};
-use isochore_mesh::{TriMesh, primitives::icosphere};
+use glam::{DVec2, DVec4, Vec3};
+use isochore_mesh::{
+    TriMesh,
+    primitives::{box_mesh, icosphere},
+};
+use isochore_sculpt::session::NormalWeights;
 
 use super::*;
 
-/// A ball with texture coordinates that break along a meridian, two materials, colors and skin weights.
+/// A ball with texture coordinates that break along a meridian, two materials with a hard edge between them, colors and skin weights.
 pub(crate) fn painted_ball() -> TriMesh {
     let mut mesh = icosphere(1.0, 3);
     let around = |p: DVec3| libm::atan2(p.y, p.x) / std::f64::consts::TAU + 0.5;
@@ -18,6 +22,11 @@ pub(crate) fn painted_ball() -> TriMesh {
     let south =
         |triangle: &[u32; 3]| u32::from(triangle.iter().map(|&v| mesh.positions[v as usize].z).sum::<f64>() < 0.0);
     mesh.triangle_materials = mesh.triangles.iter().map(south).collect();
+    let normals = |(triangle, &side): (&[u32; 3], &u32)| {
+        let tilt = DVec3::Z * if side == 0 { 0.3 } else { -0.3 };
+        triangle.map(|vertex| (mesh.positions[vertex as usize] + tilt).normalize().as_vec3())
+    };
+    mesh.corner.normals = mesh.triangles.iter().zip(&mesh.triangle_materials).map(normals).collect();
     mesh.vertex.colors =
         mesh.positions.iter().map(|p| DVec4::new(0.5 + 0.5 * p.x, 0.5 + 0.5 * p.y, 0.5, 1.0)).collect();
     let skin = |p: &DVec3| {
@@ -92,6 +101,83 @@ fn an_exported_mesh_carries_everything() {
     let unlocked = session.export(false).mesh;
     assert!((unlocked.volume() / opened.volume() - 1.0).abs() > 1e-9);
     assert!((unlocked.volume() / session.volume().unwrap() - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn shading_breaks_at_hard_edges_and_nowhere_else() {
+    for weights in [NormalWeights::Area, NormalWeights::Angle] {
+        let options = SessionOptions { normals: weights, ..SessionOptions::default() };
+        let mut session = Session::open(painted_ball(), options).unwrap();
+        let (mut edits, squeezing) = ([0; 3], InteractiveRefinement { collapse: 0.4, ..Default::default() });
+        for round in 0..10 {
+            let options =
+                StrokeOptions { refine: Some(InteractiveRefinement { longest: Some(0.08), ..squeezing.clone() }) };
+            session.begin_stroke(&brush(), options).unwrap();
+            arc(0.6 * f64::from(round), 9).iter().for_each(|pose| assert!(session.move_to(pose, 0.0).is_ok()));
+            let receipt = session.end_stroke().unwrap();
+            let made = [receipt.inserted_vertices, receipt.removed_vertices, receipt.flipped_edges];
+            (0..3).for_each(|kind| edits[kind] += made[kind]);
+        }
+        assert!(edits.iter().all(|&count| count > 0), "{edits:?}");
+        for _ in 0..3 {
+            assert!(session.undo().unwrap());
+        }
+        assert_is_shaded_by_material(&session, weights);
+        while session.redo().unwrap() {}
+        assert_is_shaded_by_material(&session, weights);
+    }
+}
+
+/// Each corner must have the mean normal of the triangles at its vertex that have its triangle's material.
+fn assert_is_shaded_by_material(session: &Session, weights: NormalWeights) {
+    let mesh = session.export(true).mesh;
+    let normals = |triangle: usize| {
+        let corners = mesh.corners(triangle);
+        [0, 1, 2].map(|side| {
+            let [a, b, c] = [0, 1, 2].map(|step| corners[(side + step) % 3]);
+            let normal = (b - a).cross(c - a);
+            match weights {
+                NormalWeights::Area => normal,
+                NormalWeights::Angle => normal.normalize() * (b - a).angle_between(c - a),
+            }
+        })
+    };
+    let mut sums = vec![[DVec3::ZERO; 2]; mesh.positions.len()];
+    for (triangle, (vertices, &side)) in mesh.triangles.iter().zip(&mesh.triangle_materials).enumerate() {
+        for (&vertex, normal) in vertices.iter().zip(normals(triangle)) {
+            sums[vertex as usize][side as usize] += normal;
+        }
+    }
+    let alive = session.buffers().indices.iter().filter(|corners| **corners != [0; 3]);
+    let mut broken = 0;
+    for (corners, (vertices, &side)) in alive.zip(mesh.triangles.iter().zip(&mesh.triangle_materials)) {
+        for (&corner, &vertex) in corners.iter().zip(vertices) {
+            let normal = DVec3::from_array(session.buffers().normals[corner as usize].map(f64::from));
+            let [here, there] = [side, 1 - side].map(|side| sums[vertex as usize][side as usize].normalize_or_zero());
+            // Rounded to f32 once; sums in another order.
+            assert!(normal.distance(here) < 1e-6, "vertex {vertex}: {normal} {here}");
+            broken += usize::from(there != DVec3::ZERO && here.distance(there) > 1e-3);
+        }
+    }
+    assert!(broken > 100, "{broken}");
+}
+
+#[test]
+fn rounding_in_normals_makes_no_hard_edges() {
+    let flat = |error: f32| {
+        let mut mesh = box_mesh(DVec3::ONE, [3, 3, 3]);
+        let normals = |triangle: usize| {
+            let [a, b, c] = mesh.corners(triangle);
+            let normal = (b - a).cross(c - a).normalize().as_vec3();
+            [0.0, 1.0, -1.0].map(|share| normal + Vec3::splat(share * error * (triangle % 7) as f32))
+        };
+        mesh.corner.normals = (0..mesh.triangles.len()).map(normals).collect();
+        open(mesh)
+    };
+    let [exact, rounded, broken] = [0.0, 1e-7, 1e-2].map(|error| flat(error).buffers().positions.len());
+    // Corners of the grids on six faces, each by itself.
+    assert_eq!([exact, rounded], [6 * 16; 2]);
+    assert!(broken > exact);
 }
 
 #[test]

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use isochore_field::{Pose, rotation_from_vector};
-use isochore_mesh::{Silent, TriMesh, primitives::icosphere};
+use isochore_mesh::{Origin, Silent, TriMesh, primitives::icosphere};
 use isochore_sculpt::{
     Meshes,
     recipe::{Capsule, Profile, Sphere, Tool, ToolShape},
@@ -76,6 +76,9 @@ fn make(session: &mut Session, tool: &Arc<SessionTool>, options: &StrokeOptions,
 #[derive(Debug, Clone, PartialEq)]
 struct Snapshot {
     positions: Vec<[u64; 3]>,
+    offsets: Vec<[u64; 3]>,
+    /// By render vertex its vertex and where it comes from.
+    render: Vec<(u32, Option<Origin>)>,
     triangles: Vec<Option<[u32; 3]>>,
     render_positions: Vec<[u32; 3]>,
     normals: Vec<[u32; 3]>,
@@ -87,9 +90,13 @@ struct Snapshot {
 
 fn snapshot(session: &Session) -> Snapshot {
     let buffers = session.buffers();
+    let wide = |values: &[DVec3]| values.iter().map(|value| value.to_array().map(f64::to_bits)).collect();
+    let origins = |render: u32| (session.vertex_of(render), session.origin_of(render));
     let bits = |values: &[[f32; 3]]| values.iter().map(|value| value.map(f32::to_bits)).collect();
     Snapshot {
-        positions: session.positions().iter().map(|position| position.to_array().map(f64::to_bits)).collect(),
+        positions: wide(session.positions()),
+        offsets: wide(session.offsets()),
+        render: (0..buffers.positions.len() as u32).map(origins).collect(),
         triangles: (0..buffers.indices.len() as u32).map(|triangle| session.triangle(triangle)).collect(),
         render_positions: bits(buffers.positions),
         normals: bits(buffers.normals),

@@ -93,6 +93,25 @@ fn memory_of_a_stroke_is_in_proportion_to_what_it_touched() {
 }
 
 #[test]
+fn memory_of_a_refined_stroke_is_in_proportion_too_also_once_undone() {
+    for subdivisions in [3, 4] {
+        let mut session = open(icosphere(1.0, subdivisions));
+        session.begin_stroke(&brush(), refined(0.03)).unwrap();
+        arc(0.0, 5).iter().for_each(|pose| assert!(session.move_to(pose, 0.0).is_ok()));
+        let receipt = session.end_stroke().unwrap();
+        assert!(receipt.inserted_vertices > 500, "{receipt:?}");
+        assert!(session.undo().unwrap());
+        let bytes = session.history().bytes;
+        // 128 bytes a vertex inserted, with its render vertex, and 88 for its two triangles. Of a vertex that was there, 104 and 20
+        // as above, and six triangles at 56 that were cut. The rim around all that is a twentieth at most.
+        let expected = 216 * (receipt.inserted_vertices - receipt.removed_vertices) + 460 * receipt.touched_vertices;
+        let most = 216 * receipt.inserted_vertices + 460 * receipt.touched_vertices;
+        assert!(bytes as f64 <= 1.05 * most as f64, "{bytes} {expected}");
+        assert!(bytes as f64 >= 0.5 * expected as f64, "{bytes} {expected}");
+    }
+}
+
+#[test]
 fn what_undo_holds_stays_within_its_budget() {
     let stroke = |session: &mut Session, index: i32| {
         make(session, &brush(), &refined(0.05), &arc(0.4 * f64::from(index), 6));
