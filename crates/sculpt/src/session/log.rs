@@ -64,7 +64,8 @@ pub(super) fn key(pose: &field::Pose) -> Key {
 impl Session {
     /// All strokes that are done and not undone, as a recipe: what it gives by [`replay`](crate::replay) or
     /// [`replay_points`](crate::replay_points) for vertices of the mesh as opened is what they have here, to the bit, as long as no
-    /// lock acts and no step is halved. Strokes that undo has forgotten are there, too.
+    /// lock acts and no step is halved. It asks for the lock if the session has it, so that a replay keeps the volume that the host
+    /// saw. Strokes that undo has forgotten are there, too.
     ///
     /// Edits of triangles are not logged: a replay refines by its own rules, and the log fits any other mesh or point set.
     pub fn log(&self) -> Recipe {
@@ -90,7 +91,7 @@ impl Session {
             integrate: Integrate { step: self.options.step },
             refine: Refine::default(),
             promise: Default::default(),
-            volume: Volume { lock: false },
+            volume: Volume { lock: self.options.lock && self.opened_volume.is_some() },
             mask: self.options.mask.clone(),
             output: Default::default(),
         }

@@ -66,6 +66,12 @@ fn the_log_gives_the_same_anywhere() {
         // And headless on the mesh itself, before the lock.
         let mut plain = log.clone();
         plain.refine.enabled = false;
+        assert!(plain.volume.lock);
+        let kept = isochore_sculpt::replay(&plain, &meshes(mesh.clone()), &Silent).unwrap().deformed;
+        assert!(kept.receipt.lock_max_shift.is_some());
+        // Rounding of a sum over some thousand triangles.
+        assert!((kept.mesh.volume() / mesh.volume() - 1.0).abs() < 1e-13);
+        plain.volume.lock = false;
         let replayed = isochore_sculpt::replay(&plain, &meshes(mesh.clone()), &Silent).unwrap();
         let count = mesh.positions.len();
         assert_eq!(replayed.deformed.receipt.lock_max_shift, None);
@@ -77,6 +83,22 @@ fn the_log_gives_the_same_anywhere() {
         assert_eq!(receipts.len(), 3);
         assert_eq!(&again.positions()[..count], &session.positions()[..count]);
         assert_eq!(again.log(), log);
+    }
+}
+
+#[test]
+fn the_log_asks_for_a_lock_only_where_there_was_one() {
+    let mut opened = icosphere(1.0, 3);
+    opened.triangles.pop();
+    let unlocked = SessionOptions { lock: false, ..SessionOptions::default() };
+    for (mesh, options, expected) in [
+        (icosphere(1.0, 3), SessionOptions::default(), true),
+        (icosphere(1.0, 3), unlocked, false),
+        (opened, SessionOptions::default(), false),
+    ] {
+        let mut session = Session::open(mesh, options).unwrap();
+        make(&mut session, &brush(), &UNREFINED, &arc(0.0, 5));
+        assert_eq!(session.log().volume.lock, expected);
     }
 }
 
