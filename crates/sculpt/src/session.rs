@@ -173,12 +173,15 @@ impl Session {
         let mut done = MoveReceipt::default();
         if let Some(last) = stroke.pose {
             let segment = self.segment(&stroke.tool, [last, pose])?;
-            self.carry(segment, &mut done)?;
+            let carried = self.carry(segment, &mut done);
+            if let Some(stroke) = &mut self.stroke {
+                // Edges that were split before the move was refused stay so.
+                stroke.note_edits(&done);
+            }
+            carried?;
         }
         if let Some(stroke) = &mut self.stroke {
-            if stroke.pose.is_some() {
-                stroke.note_move(&done);
-            }
+            stroke.receipt.moves += usize::from(stroke.pose.is_some());
             stroke.keys.push(key);
             stroke.times.push(time);
             stroke.pose = Some(pose);

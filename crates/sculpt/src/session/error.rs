@@ -32,7 +32,8 @@ pub enum OpenError {
     Options(#[from] RecipeError),
 }
 
-/// Why a session refuses a call. It is then as it was before.
+/// Why a session refuses a call. It is then as it was before, but for one case: a move that ends in an [`Overflow`](Self::Overflow)
+/// leaves edges split that it found too long, which moves nothing, and which the receipt of the stroke counts.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SessionError {
     /// There is a stroke that has not ended.

@@ -116,9 +116,9 @@ impl ActiveStroke {
         self.moved.extend(triangles.iter().filter(|&&triangle| self.moved_marks.insert(triangle)));
     }
 
-    pub(super) fn note_move(&mut self, done: &MoveReceipt) {
+    /// Takes what a move did into the receipt of the stroke.
+    pub(super) fn note_edits(&mut self, done: &MoveReceipt) {
         let receipt = &mut self.receipt;
-        receipt.moves += 1;
         receipt.inserted_vertices += done.inserted_vertices;
         receipt.removed_vertices += done.removed_vertices;
         receipt.flipped_edges += done.flipped_edges;
