@@ -223,6 +223,37 @@ fn a_mask_holds_edges_as_well_as_vertices() {
 }
 
 #[test]
+fn only_triangles_near_the_way_of_the_tool_are_edited() {
+    let mesh = icosphere(1.0, 4);
+    let mut session = open(mesh.clone());
+    let poses = arc(0.0, 6);
+    let fine = InteractiveRefinement { longest: Some(0.03), collapse: 0.4, ..InteractiveRefinement::default() };
+    let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(fine) }, &poses);
+    assert!(receipt.inserted_vertices > 1000 && receipt.flipped_edges > 0, "{receipt:?}");
+    let edge = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let longest = edge.map(|ends| ends.map(|end| mesh.positions[end as usize])).map(|[a, b]| a.distance(b));
+    let longest = longest.fold(0.0, f64::max);
+    let step = poses.windows(2).map(|pair| pair[0].translation.distance(pair[1].translation)).fold(0.0, f64::max);
+    // The ball around a triangle that may be met reaches an edge beyond the support, its corners another; splits cut the triangle on
+    // the other side of an edge as well.
+    let reach = 0.2 + 0.25 + 0.5 * step + 3.0 * longest;
+    let (mut far, mut near) = (0, 0);
+    for (triangle, corners) in (0_u32..).zip(&mesh.triangles) {
+        let is_far = |&vertex: &u32| {
+            let position = mesh.positions[vertex as usize];
+            poses.iter().all(|pose| pose.translation.distance(position) > reach)
+        };
+        if corners.iter().all(is_far) {
+            assert_eq!(session.triangle(triangle), Some(*corners));
+            far += 1;
+        } else {
+            near += usize::from(session.triangle(triangle) != Some(*corners));
+        }
+    }
+    assert!(far > mesh.triangles.len() / 2 && near > 100, "{far} {near}");
+}
+
+#[test]
 fn an_open_surface_keeps_its_boundary() {
     let mut mesh = icosphere(1.0, 3);
     let whole = mesh.triangles.clone();
