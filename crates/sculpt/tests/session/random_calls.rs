@@ -1,4 +1,5 @@
 use isochore_mesh::CompensatedSum;
+use isochore_sculpt::recipe::{Mask, Pin};
 
 use super::*;
 
@@ -23,6 +24,7 @@ impl Numbers {
 /// A session with what it should be.
 struct Checked {
     session: Session,
+    options: SessionOptions,
     numbers: Numbers,
     tools: [Arc<SessionTool>; 2],
     /// States that undo should lead to, and redo.
@@ -32,6 +34,10 @@ struct Checked {
     pose: Pose,
     time: f64,
     strokes: usize,
+    forgotten: usize,
+    /// Triangles that the stroke under way may not go beyond.
+    most: usize,
+    locked: usize,
     edits: [usize; 3],
 }
 
@@ -53,7 +59,7 @@ impl Checked {
                 let direction = self.numbers.direction();
                 assert!(self.session.pick(5.0 * direction, -direction).is_some());
             }
-            35 => assert_eq!(self.session.log().strokes.len(), self.done.len()),
+            35 => assert_eq!(self.session.log().strokes.len(), self.forgotten + self.done.len()),
             36 => {
                 let count = self.session.vertex_count();
                 let frozen: Vec<u32> = (0..self.numbers.below(3)).map(|_| self.numbers.below(count) as u32).collect();
@@ -62,19 +68,27 @@ impl Checked {
             37 => drop(self.session.move_to(&Pose::at(DVec3::NAN), self.time).unwrap_err()),
             _ => assert!(self.session.closest_point(self.pose.translation).is_some()),
         }
+        let history = self.session.history();
+        assert!(history.bytes <= self.options.undo_bytes || history.undoable + history.redoable == 1, "{history:?}");
+        assert_eq!((history.undoable, history.redoable), (self.done.len(), self.undone.len()));
     }
 
     fn begin(&mut self) {
         if self.session.is_stroke_under_way() {
             return;
         }
+        let keep = match self.numbers.below(3) {
+            0 => vec![(self.numbers.direction(), 0.3 * self.numbers.next())],
+            _ => Vec::new(),
+        };
         let refine = InteractiveRefinement {
             longest: Some(0.1 + 0.2 * self.numbers.next()),
             collapse: 0.4 * self.numbers.next(),
             flip: self.numbers.below(4) > 0,
-            max_triangles: 6000,
-            keep: Vec::new(),
+            max_triangles: 1000 + self.numbers.below(5000),
+            keep,
         };
+        self.most = refine.max_triangles.max(self.session.triangle_count());
         let options = StrokeOptions { refine: (self.numbers.below(4) > 0).then_some(refine) };
         self.session.begin_stroke(&self.tools[self.strokes % 2], options).unwrap();
         self.strokes += 1;
@@ -92,10 +106,11 @@ impl Checked {
         self.time += self.numbers.next();
         self.session.move_to(&self.pose, self.time).unwrap();
         assert!(self.session.positions().iter().all(|position| position.is_finite()));
+        assert!(self.session.triangle_count() <= self.most);
     }
 
     fn end(&mut self) {
-        let before = self.session.volume().unwrap();
+        let before = self.session.volume();
         let receipt = self.session.end_stroke().unwrap();
         self.edits[0] += receipt.inserted_vertices;
         self.edits[1] += receipt.removed_vertices;
@@ -104,16 +119,34 @@ impl Checked {
             assert_eq!(snapshot(&self.session), self.now);
             return;
         }
-        assert_sound(&self.session);
-        let (volume, after) = (receipt.volume.unwrap(), self.session.export(false).mesh.volume());
-        let mut expected = CompensatedSum::default();
-        [before, volume.total()].into_iter().for_each(|part| expected.add(part));
-        // Each stroke so far has added its bound on rounding; the whole sum rounds by some units.
-        let tolerance = volume.rounding * (self.done.len() + 1) as f64 + 1e-13;
-        assert!((after - expected.value()).abs() < tolerance, "{volume:?}: {after} {}", expected.value());
+        self.assert_sound();
+        assert_eq!(before.is_some(), receipt.volume.is_some());
+        if let (Some(before), Some(volume)) = (before, receipt.volume) {
+            let after = self.session.export(false).mesh.volume();
+            let mut expected = CompensatedSum::default();
+            [before, volume.total()].into_iter().for_each(|part| expected.add(part));
+            // Each stroke so far has added its bound on rounding; the whole sum rounds by some units.
+            let tolerance = volume.rounding * (self.forgotten + self.done.len() + 1) as f64 + 1e-13;
+            assert!((after - expected.value()).abs() < tolerance, "{volume:?}: {after} {}", expected.value());
+            if receipt.lock_max_shift.is_some() {
+                self.locked += 1;
+                let shown = self.session.export(true).mesh.volume();
+                assert!((shown - self.session.opened().volume()).abs() < tolerance, "{receipt:?}: {shown}");
+            }
+        }
         self.undone.clear();
         let now = snapshot(&self.session);
         self.done.push(std::mem::replace(&mut self.now, now));
+        self.done.drain(..receipt.forgotten_strokes);
+        self.forgotten += receipt.forgotten_strokes;
+    }
+
+    fn assert_sound(&self) {
+        if self.session.volume().is_some() {
+            return assert_sound(&self.session);
+        }
+        let check = self.session.export(false).mesh.check();
+        assert!(!check.is_closed() && check.is_oriented() && check.is_manifold() && check.is_valid(), "{check:?}");
     }
 
     fn step(&mut self, step: fn(&mut Session) -> Result<bool, isochore_sculpt::session::SessionError>, is_undo: bool) {
@@ -128,18 +161,42 @@ impl Checked {
             to.push(std::mem::replace(&mut self.now, expected));
         }
         assert_eq!(snapshot(&self.session), self.now);
-        assert_sound(&self.session);
+        self.assert_sound();
     }
 }
 
 #[test]
-fn ten_thousand_calls_leave_a_sound_surface() {
+fn twelve_thousand_calls_leave_a_sound_surface() {
     let mut edits = [0; 3];
-    for seed in 0..5 {
-        let session = open(if seed % 2 == 0 { icosphere(1.0, 2) } else { super::attributes::painted_ball() });
+    let (mut forgotten, mut locked) = (0, 0);
+    let mut cut = super::attributes::painted_ball();
+    // A hole in one place.
+    for index in (0..cut.triangles.len()).rev() {
+        if cut.triangles[index].iter().all(|&vertex| cut.positions[vertex as usize].x > 0.8) {
+            cut.triangles.remove(index);
+            cut.triangle_materials.remove(index);
+            cut.corner.normals.remove(index);
+            cut.corner.uvs[0].remove(index);
+        }
+    }
+    let pin = Pin { center: [0.0, 0.0, 1.0], radius: 0.2, support: 0.3 };
+    let masked = Mask { pins: vec![pin], ..Mask::default() };
+    let options = SessionOptions::default();
+    let (plain, painted) = (|| icosphere(1.0, 2), super::attributes::painted_ball);
+    let sessions = [
+        (plain(), options.clone()),
+        (painted(), options.clone()),
+        (plain(), SessionOptions { undo_bytes: 300_000, ..options.clone() }),
+        (painted(), SessionOptions { undo_bytes: 300_000, lock: false, ..options.clone() }),
+        (plain(), SessionOptions { mask: masked, ..options.clone() }),
+        (cut, options),
+    ];
+    for (seed, (mesh, options)) in (0..).zip(sessions) {
+        let session = Session::open(mesh, options.clone()).unwrap();
         let mut checked = Checked {
             now: snapshot(&session),
             session,
+            options,
             numbers: Numbers(seed + 1),
             tools: [brush(), rod()],
             done: Vec::new(),
@@ -147,6 +204,9 @@ fn ten_thousand_calls_leave_a_sound_surface() {
             pose: Pose::IDENTITY,
             time: 0.0,
             strokes: 0,
+            forgotten: 0,
+            locked: 0,
+            most: usize::MAX,
             edits: [0; 3],
         };
         for _ in 0..2000 {
@@ -154,6 +214,9 @@ fn ten_thousand_calls_leave_a_sound_surface() {
         }
         assert!(checked.strokes > 50);
         (0..3).for_each(|kind| edits[kind] += checked.edits[kind]);
+        forgotten += checked.forgotten;
+        locked += checked.locked;
     }
+    assert!(forgotten > 10 && locked > 50, "{forgotten} {locked}");
     assert!(edits.iter().all(|&count| count > 20), "{edits:?}");
 }
