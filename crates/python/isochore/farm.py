@@ -8,15 +8,17 @@
 
 Recipe, targets and results lie in folders that all workers see under the same path. Each mesh is one task; the cluster gives the
 tasks of a worker that dies to others. A result is written whole or not at all, the mesh first and then its report, so that what is
-finished stays finished: started again with the same recipe, settings and targets, a run does only what is missing.
+finished stays finished: started again with the same files, settings and version, a run does only what is missing.
 """
 
 import functools
 import hashlib
+import importlib.metadata
 import json
 import os
 import pathlib
 import tempfile
+import tomllib
 
 from isochore._recipe import run as _run
 
@@ -52,21 +54,53 @@ def _deform(recipe, target, place, *, settings):
     account = place.with_name(place.name + ".json")
     if place.exists() and account.exists():
         done = json.loads(account.read_text(encoding="utf-8"))
-        if done["origin"] == origin:
+        # A worker may have died after it wrote another mesh, and before its report.
+        if done["origin"] == origin and done["mesh"] == _sha256(place):
             return done["report"]
     result = _run(recipe, settings=[*settings, f"target.mesh={json.dumps(str(target))}"])
+    account.unlink(missing_ok=True)
     result.mesh.write(place)
-    _write_whole(account, json.dumps({"origin": origin, "report": result.report}, indent=2))
+    done = {"origin": origin, "mesh": _sha256(place), "report": result.report}
+    _write_whole(account, json.dumps(done, indent=2))
     return result.report
 
 
 def _origin(recipe, target, settings):
-    """What a result is made of: of recipe and target the SHA-256, and the settings."""
-    sha256 = {"recipe": recipe, "target": target}
+    """What a result is made of: the version, the settings, and of all files the SHA-256."""
+    files = {recipe, target, *_named_files(recipe, settings)}
     return {
-        **{name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in sha256.items()},
+        "version": importlib.metadata.version("isochore"),
         "settings": list(settings),
+        "files": {str(path): _sha256(path) for path in sorted(files)},
     }
+
+
+def _named_files(recipe, settings):
+    """Files that recipe and settings name: whatever text in them is the path of one."""
+    text = recipe.read_text(encoding="utf-8")
+    tables = [json.loads(text) if recipe.suffix == ".json" else tomllib.loads(text)]
+    for setting in settings:
+        value = setting.partition("=")[2]
+        try:
+            tables.append(tomllib.loads(f"value = {value}"))
+        except tomllib.TOMLDecodeError:
+            tables.append(value)  # Words need no quotes on the command line.
+    for text in _texts(tables):
+        path = (recipe.parent / text).resolve()
+        if path.is_file():
+            yield path
+
+
+def _texts(value):
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, (dict, list)):
+        for part in value.values() if isinstance(value, dict) else value:
+            yield from _texts(part)
+
+
+def _sha256(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _write_whole(path, text):

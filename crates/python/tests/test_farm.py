@@ -70,6 +70,36 @@ def test_what_has_changed_is_done_again(client, job, tmp_path):
     assert first["inserted_vertices"] > 0 and second["inserted_vertices"] == 0
 
 
+def test_a_changed_tool_makes_a_new_result(client, job, tmp_path):
+    recipe, targets = job
+    table = json.loads(recipe.read_text())
+    [name] = table["tools"]
+    table["tools"][name]["shape"] = {"kind": "mesh", "mesh": "tool.ply", "resolution": 16}
+    recipe.write_text(json.dumps(table))
+    places = []
+    for radius in [0.3, 0.35]:
+        shape = {"kind": "icosphere", "radius": radius, "subdivisions": 3}
+        isochore.run({"recipe": 1, "target": {"shape": shape}, "stroke": []}).mesh.write(tmp_path / "tool.ply")
+        [(_, report)] = farm.run(recipe, targets[:1], tmp_path / "results", client=client)
+        assert isinstance(report, dict)
+        places.append((tmp_path / "results" / targets[0].name).read_bytes())
+        alone = isochore.run(recipe, settings=[f"target.mesh={json.dumps(str(targets[0]))}"])
+        assert places[-1] == alone.mesh.to_bytes("ply")
+    assert places[0] != places[1]
+
+
+def test_a_report_tells_of_the_mesh_beside_it(client, job, tmp_path):
+    recipe, targets = job
+    results = tmp_path / "results"
+    place = results / targets[0].name
+    [(_, first)] = farm.run(recipe, targets[:1], results, client=client)
+    mesh = place.read_bytes()
+    # As a worker leaves it that dies between mesh and report.
+    isochore.Mesh.read(targets[1]).write(place)
+    [(_, second)] = farm.run(recipe, targets[:1], results, client=client)
+    assert place.read_bytes() == mesh and second["after"] == first["after"]
+
+
 def test_one_bad_target_spoils_no_other(client, job, tmp_path):
     recipe, targets = job
     targets[0].write_text("no mesh")

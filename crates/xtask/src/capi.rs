@@ -39,18 +39,22 @@ fn install_under(prefix: &Path) -> TaskResult {
     Ok(())
 }
 
+/// The example whose recipe the command carries out too, to the same bytes.
+const PRESS: &str = "examples/press.c";
+
 /// Installs into the target folder, builds the examples and the tests with what pkg-config says, as C and as C++, and runs them, the tests
 /// also under valgrind.
 pub(crate) fn test_programs() -> TaskResult {
     let prefix = target().join("capi");
     install_under(&prefix)?;
     let flags = pkg_config_flags(&prefix)?;
+    let expected = pressed_by_command(&prefix)?;
     let programs = [
-        ("cc", "-std=c11", "examples/press.c"),
+        ("cc", "-std=c11", PRESS),
         ("cc", "-std=c11", "examples/sculpt.c"),
         ("cc", "-std=c11", "tests/border.c"),
         ("cc", "-std=c11", "tests/random_calls.c"),
-        ("c++", "-xc++", "examples/press.c"),
+        ("c++", "-xc++", PRESS),
     ];
     for (compiler, language, source) in programs {
         let is_test = source.starts_with("tests");
@@ -60,6 +64,9 @@ pub(crate) fn test_programs() -> TaskResult {
         run(compile.arg("-xnone").arg("-o").arg(&program).args(&flags))?;
         let mesh = prefix.join("written.obj");
         run(Command::new(&program).arg(&mesh).env("LD_LIBRARY_PATH", prefix.join("lib")))?;
+        if source == PRESS && fs::read(&mesh)? != expected {
+            return Err(format!("{source} by {compiler} writes other bytes than the command").into());
+        }
         if is_test {
             debian::require("valgrind", "valgrind")?;
             let mut memory_check = Command::new("valgrind");
@@ -74,6 +81,17 @@ pub(crate) fn test_programs() -> TaskResult {
         }
     }
     Ok(())
+}
+
+/// What the command writes for the recipe of [`PRESS`], whose lines are those in quotes.
+fn pressed_by_command(folder: &Path) -> TaskResult<Vec<u8>> {
+    let source = fs::read_to_string(workspace().join("crates/capi").join(PRESS))?;
+    let lines = source.lines().filter_map(|line| line.trim().strip_prefix('"')?.split("\\n\"").next());
+    let (recipe, mesh) = (folder.join("press.toml"), folder.join("expected.obj"));
+    fs::write(&recipe, lines.collect::<Vec<_>>().join("\n"))?;
+    let mut command = cargo(&["run", "--release", "--locked", "--quiet", "--package", "isochore", "--", "run"]);
+    run(command.arg(&recipe).args(["--quiet", "--output"]).arg(&mesh))?;
+    Ok(fs::read(mesh)?)
 }
 
 /// What pkg-config tells compilers; where it is missing, what it would tell.

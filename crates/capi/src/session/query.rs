@@ -23,7 +23,7 @@ pub struct Hit {
     pub point: [f64; 3],
     /// Unit normal of the triangle.
     pub normal: [f64; 3],
-    /// Distance from where the query began, model units.
+    /// Distance from where the query began: of a closest point in model units, of a pick in lengths of its direction.
     pub distance: f64,
 }
 
