@@ -1,5 +1,7 @@
 //! Triangle meshes.
 
+mod attributes;
+
 use std::{ffi::c_char, sync::Arc};
 
 use bytemuck::cast_slice;
@@ -9,6 +11,12 @@ use isochore_mesh::{ClosedMesh, TriMesh, io};
 use crate::{
     error::{Failure, Status, guarded},
     memory::{array, fill, free, hand_over, put, reference, reference_mut, text},
+};
+
+pub use attributes::{
+    isochore_mesh_material_name, isochore_mesh_normals, isochore_mesh_set_materials, isochore_mesh_set_normals,
+    isochore_mesh_set_uvs, isochore_mesh_set_vertex_colors, isochore_mesh_triangle_materials, isochore_mesh_uvs,
+    isochore_mesh_vertex_colors,
 };
 
 /// A triangle mesh.

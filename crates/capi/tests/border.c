@@ -326,6 +326,73 @@ static void skins(void) {
     isochore_mesh_free(mesh);
 }
 
+/* What a host hands over with its mesh comes back from a session, and files show it. */
+static void attributes(const char *path) {
+    const double start[] = {0.3, 0.3, 0.8}, end[] = {0.3, 0.3, 0.3};
+    const uint32_t of_triangles[] = {0, 1, 0, 1}, wrong[] = {0, 1, 0, 2};
+    const char *const names[] = {"clay", "glaze"};
+    double uvs[24], colors[16];
+    float normals[36];
+    for (int i = 0; i < 24; i++) uvs[i] = i / 24.0;
+    for (int i = 0; i < 16; i++) colors[i] = i / 16.0;
+    for (int i = 0; i < 36; i++) normals[i] = i % 3 == 2;
+    IsochoreMesh *mesh = tetrahedron(), *refined = NULL;
+    IsochoreTool *tool = NULL;
+    IsochoreSession *session = NULL;
+    const double *found = NULL;
+    const float *directions = NULL;
+    const uint32_t *materials = NULL;
+    char *name = NULL;
+    size_t count = 1;
+
+    CHECK(isochore_mesh_uvs(mesh, 0, &found, &count) == ISOCHORE_STATUS_OK && count == 0);
+    CHECK(isochore_mesh_set_uvs(mesh, 1, uvs) == ISOCHORE_STATUS_ARGUMENT);
+    uvs[7] = NAN;
+    CHECK(isochore_mesh_set_uvs(mesh, 0, uvs) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(strstr(isochore_last_error(), "element 1"));
+    uvs[7] = 0.5;
+    CHECK(isochore_mesh_set_uvs(mesh, 0, uvs) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_mesh_set_uvs(mesh, 1, uvs) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_mesh_set_normals(mesh, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_mesh_set_normals(mesh, normals) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_mesh_set_vertex_colors(mesh, colors) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_mesh_set_materials(mesh, wrong, names, 2) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(strstr(isochore_last_error(), "triangle 3"));
+    CHECK(isochore_mesh_set_materials(mesh, of_triangles, names, 2) == ISOCHORE_STATUS_OK);
+
+    CHECK(isochore_mesh_uvs(mesh, 1, &found, &count) == ISOCHORE_STATUS_OK);
+    CHECK(count == 24 && memcmp(found, uvs, sizeof uvs) == 0);
+    CHECK(isochore_mesh_normals(mesh, &directions, &count) == ISOCHORE_STATUS_OK);
+    CHECK(count == 36 && memcmp(directions, normals, sizeof normals) == 0);
+    CHECK(isochore_mesh_vertex_colors(mesh, &found, &count) == ISOCHORE_STATUS_OK);
+    CHECK(count == 16 && memcmp(found, colors, sizeof colors) == 0);
+    CHECK(isochore_mesh_material_name(mesh, 2, &name) == ISOCHORE_STATUS_ARGUMENT);
+
+    CHECK(isochore_tool_new("ball", WIDE_BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_end_stroke(session, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_export(session, true, &refined) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_mesh_write(refined, path) == ISOCHORE_STATUS_OK);
+    isochore_mesh_free(refined);
+    CHECK(isochore_mesh_read(path, &refined) == ISOCHORE_STATUS_OK);
+    size_t triangles = isochore_mesh_triangle_count(refined);
+    CHECK(triangles > 4);
+    CHECK(isochore_mesh_uvs(refined, 0, &found, &count) == ISOCHORE_STATUS_OK && count == 6 * triangles);
+    for (size_t i = 0; i < count; i++) CHECK(found[i] >= 0 && found[i] <= 1);
+    CHECK(isochore_mesh_triangle_materials(refined, &materials, &count) == ISOCHORE_STATUS_OK && count == triangles);
+    for (size_t i = 0; i < count; i++) CHECK(materials[i] < 2);
+    CHECK(isochore_mesh_material_name(refined, materials[0], &name) == ISOCHORE_STATUS_OK);
+    CHECK(strcmp(name, "clay") == 0 || strcmp(name, "glaze") == 0);
+    isochore_text_free(name);
+    isochore_mesh_free(refined);
+    isochore_session_free(session);
+    isochore_tool_free(tool);
+    isochore_mesh_free(mesh);
+}
+
 int main(int count, char **arguments) {
     CHECK(count == 2);
     meshes(arguments[1]);
@@ -335,5 +402,6 @@ int main(int count, char **arguments) {
     queries();
     masks();
     skins();
+    attributes(arguments[1]);
     return 0;
 }
