@@ -82,9 +82,14 @@ def test_progress_is_told_and_can_stop(recipe):
 
 
 def test_ctrl_c_stops(recipe):
+    # Shells start what runs in the background without a handler.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
-    with pytest.raises(KeyboardInterrupt):
-        isochore.run(long_work(recipe))
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            isochore.run(long_work(recipe))
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_other_threads_run_meanwhile(recipe):
