@@ -284,14 +284,30 @@ static void masks(void) {
     isochore_mesh_free(mesh);
 }
 
+/* What is left of a mesh that a ball pressed into one face, its long edges split. */
+static IsochoreMesh *refined_by_a_press(const IsochoreMesh *mesh, bool lock) {
+    const double start[] = {0.3, 0.3, 0.8}, end[] = {0.3, 0.3, 0.3};
+    IsochoreMesh *refined = NULL;
+    IsochoreTool *tool = NULL;
+    IsochoreSession *session = NULL;
+
+    CHECK(isochore_tool_new("ball", WIDE_BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_end_stroke(session, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_export(session, lock, &refined) == ISOCHORE_STATUS_OK);
+    isochore_session_free(session);
+    isochore_tool_free(tool);
+    return refined;
+}
+
 /* Each vertex has two joints of its own, so that those of any other are the joints of its neighbors. */
 static void skins(void) {
     const uint32_t joints[] = {0, 1, 2, 3, 4, 5, 6, 7};
     const double weights[] = {1, 3, 1, 3, 1, 3, 1, 3}, wrong[] = {1, 3, 1, 3, -1, 3, 1, 3};
-    const double start[] = {0.3, 0.3, 0.8}, end[] = {0.3, 0.3, 0.3};
     IsochoreMesh *mesh = tetrahedron(), *refined = NULL;
-    IsochoreTool *tool = NULL;
-    IsochoreSession *session = NULL;
 
     CHECK(isochore_mesh_skin_influences(mesh) == 0 && isochore_mesh_skin_influences(NULL) == 0);
     CHECK(isochore_mesh_set_skin(mesh, 2, joints, wrong) == ISOCHORE_STATUS_ARGUMENT);
@@ -300,13 +316,7 @@ static void skins(void) {
     CHECK(isochore_mesh_set_skin(mesh, SIZE_MAX / 2, joints, weights) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(isochore_mesh_set_skin(mesh, 2, joints, weights) == ISOCHORE_STATUS_OK);
 
-    CHECK(isochore_tool_new("ball", WIDE_BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_end_stroke(session, NULL) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_export(session, false, &refined) == ISOCHORE_STATUS_OK);
+    refined = refined_by_a_press(mesh, false);
     size_t count = isochore_mesh_vertex_count(refined), each = isochore_mesh_skin_influences(refined);
     CHECK(count > 4 && each == 2);
     uint32_t *found = (uint32_t *)malloc(count * each * sizeof *found);
@@ -321,14 +331,11 @@ static void skins(void) {
     free(found);
     free(shares);
     isochore_mesh_free(refined);
-    isochore_session_free(session);
-    isochore_tool_free(tool);
     isochore_mesh_free(mesh);
 }
 
 /* What a host hands over with its mesh comes back from a session, and files show it. */
 static void attributes(const char *path) {
-    const double start[] = {0.3, 0.3, 0.8}, end[] = {0.3, 0.3, 0.3};
     const uint32_t of_triangles[] = {0, 1, 0, 1}, wrong[] = {0, 1, 0, 2};
     const char *const names[] = {"clay", "glaze"};
     double uvs[24], colors[16];
@@ -337,8 +344,6 @@ static void attributes(const char *path) {
     for (int i = 0; i < 16; i++) colors[i] = i / 16.0;
     for (int i = 0; i < 36; i++) normals[i] = i % 3 == 2;
     IsochoreMesh *mesh = tetrahedron(), *refined = NULL;
-    IsochoreTool *tool = NULL;
-    IsochoreSession *session = NULL;
     const double *found = NULL;
     const float *directions = NULL;
     const uint32_t *materials = NULL;
@@ -368,13 +373,7 @@ static void attributes(const char *path) {
     CHECK(count == 16 && memcmp(found, colors, sizeof colors) == 0);
     CHECK(isochore_mesh_material_name(mesh, 2, &name) == ISOCHORE_STATUS_ARGUMENT);
 
-    CHECK(isochore_tool_new("ball", WIDE_BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_end_stroke(session, NULL) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_export(session, true, &refined) == ISOCHORE_STATUS_OK);
+    refined = refined_by_a_press(mesh, true);
     CHECK(isochore_mesh_write(refined, path) == ISOCHORE_STATUS_OK);
     isochore_mesh_free(refined);
     CHECK(isochore_mesh_read(path, &refined) == ISOCHORE_STATUS_OK);
@@ -388,8 +387,6 @@ static void attributes(const char *path) {
     CHECK(strcmp(name, "clay") == 0 || strcmp(name, "glaze") == 0);
     isochore_text_free(name);
     isochore_mesh_free(refined);
-    isochore_session_free(session);
-    isochore_tool_free(tool);
     isochore_mesh_free(mesh);
 }
 

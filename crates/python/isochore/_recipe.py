@@ -32,8 +32,8 @@ def run_points(recipe, points, *, meshes=None, settings=(), progress=None):
     return loaded.replay_points(points, *files, progress)
 
 
-def _load(recipe, meshes, settings):
-    """The recipe, and what its names stand for: meshes, curves and the weights of its mask."""
+def parse(recipe, settings):
+    """The recipe, and the folder from which its names are paths."""
     if isinstance(recipe, Mapping):
         folder, text, is_json = pathlib.Path(), to_json(recipe), True
     else:
@@ -43,7 +43,12 @@ def _load(recipe, meshes, settings):
         settings = [str(setting) for setting in settings]
     else:
         settings = [f"{key}={to_json(value)}" for key, value in settings.items()]
-    loaded = LoadedRecipe(text, is_json, settings)
+    return LoadedRecipe(text, is_json, settings), folder
+
+
+def _load(recipe, meshes, settings):
+    """The recipe, and what its names stand for: meshes, curves and the weights of its mask."""
+    loaded, folder = parse(recipe, settings)
     found = {name: meshes[name] if name in meshes else Mesh.read(folder / name) for name in loaded.mesh_names}
     curves = {name: [row[:3] for row in _rows(folder / name, (3, 6))] for name in loaded.curve_names}
     weights = None

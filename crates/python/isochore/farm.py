@@ -18,8 +18,8 @@ import json
 import os
 import pathlib
 import tempfile
-import tomllib
 
+from isochore._recipe import parse as _parse
 from isochore._recipe import run as _run
 
 try:
@@ -50,14 +50,15 @@ def run(recipe, targets, folder, *, client, format="ply", settings=()):
 
 def _deform(recipe, target, place, *, settings):
     """One task: the report, made now or found from an earlier run."""
-    origin = _origin(recipe, target, settings)
+    settings = [*settings, f"target.mesh={json.dumps(str(target))}"]
+    origin = _origin(recipe, settings)
     account = place.with_name(place.name + ".json")
     if place.exists() and account.exists():
         done = json.loads(account.read_text(encoding="utf-8"))
         # A worker may have died after it wrote another mesh, and before its report.
         if done["origin"] == origin and done["mesh"] == _sha256(place):
             return done["report"]
-    result = _run(recipe, settings=[*settings, f"target.mesh={json.dumps(str(target))}"])
+    result = _run(recipe, settings=settings)
     account.unlink(missing_ok=True)
     result.mesh.write(place)
     done = {"origin": origin, "mesh": _sha256(place), "report": result.report}
@@ -65,38 +66,17 @@ def _deform(recipe, target, place, *, settings):
     return result.report
 
 
-def _origin(recipe, target, settings):
-    """What a result is made of: the version, the settings, and of all files the SHA-256."""
-    files = {recipe, target, *_named_files(recipe, settings)}
+def _origin(recipe, settings):
+    """What a result is made of: the version, the settings, and the SHA-256 of the recipe and of all files that it names."""
+    loaded, folder = _parse(recipe, settings)
+    names = {*loaded.mesh_names, *loaded.curve_names, *filter(None, [loaded.weights_name])}
+    # What is missing, the run itself complains of.
+    named = [path for path in (folder / name for name in sorted(names)) if path.is_file()]
     return {
         "version": importlib.metadata.version("isochore"),
-        "settings": list(settings),
-        "files": {str(path): _sha256(path) for path in sorted(files)},
+        "settings": settings,
+        "files": {str(path): _sha256(path) for path in [recipe, *named]},
     }
-
-
-def _named_files(recipe, settings):
-    """Files that recipe and settings name: whatever text in them is the path of one."""
-    text = recipe.read_text(encoding="utf-8")
-    tables = [json.loads(text) if recipe.suffix == ".json" else tomllib.loads(text)]
-    for setting in settings:
-        value = setting.partition("=")[2]
-        try:
-            tables.append(tomllib.loads(f"value = {value}"))
-        except tomllib.TOMLDecodeError:
-            tables.append(value)  # Words need no quotes on the command line.
-    for text in _texts(tables):
-        path = (recipe.parent / text).resolve()
-        if path.is_file():
-            yield path
-
-
-def _texts(value):
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, (dict, list)):
-        for part in value.values() if isinstance(value, dict) else value:
-            yield from _texts(part)
 
 
 def _sha256(path):
