@@ -37,6 +37,7 @@ int main(int count, char **arguments) {
     IsochoreMesh *clay = NULL, *result = NULL;
     IsochoreTool *brush = NULL;
     IsochoreSession *session = NULL;
+    IsochoreMoveReceipt move;
     IsochoreStrokeReceipt receipt;
     float *copy = NULL;
 
@@ -50,8 +51,8 @@ int main(int count, char **arguments) {
     check(isochore_session_begin_stroke(session, brush, NULL));
     for (int step = 0; step < 6; step++) {
         const double at[3] = {0.1 * step, 0, 1.2 - 0.04 * step};
-        check(isochore_session_move_to(session, at, NULL, step / 60.0));
-        printf("move %d: %zu rows\n", step, upload(session, &copy));
+        check(isochore_session_move_to(session, at, NULL, step / 60.0, &move));
+        printf("move %d: %zu vertices, %zu rows\n", step, move.moved_vertices, upload(session, &copy));
     }
     check(isochore_session_end_stroke(session, &receipt));
     printf("%zu moves, %zu vertices touched, %zu inserted, volume %+.1e\n", receipt.moves, receipt.touched_vertices,

@@ -144,3 +144,51 @@ impl From<SessionError> for Failure {
         Self::new(status, error)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::{ffi::CStr, sync::Barrier, thread};
+
+    use super::*;
+
+    fn last_error() -> String {
+        // SAFETY: never NULL, and nothing on this thread fails before it is copied.
+        unsafe { CStr::from_ptr(isochore_last_error()) }.to_str().unwrap().to_owned()
+    }
+
+    fn fails(message: &str) -> Result<(), Failure> {
+        Err(Failure::new(Status::Mesh, message))
+    }
+
+    #[test]
+    fn panics_stay_on_this_side_and_are_told() {
+        assert_eq!(guarded(|| panic!("vertex {} is missing", 7)), Status::Internal);
+        assert_eq!(last_error(), "internal fault: vertex 7 is missing");
+        assert_eq!(guarded(|| panic!("words that are known before")), Status::Internal);
+        assert_eq!(last_error(), "internal fault: words that are known before");
+        assert_eq!(guarded(|| std::panic::panic_any(7)), Status::Internal);
+        assert_eq!(last_error(), "internal fault: unknown");
+        // The next call works, and leaves the words.
+        assert_eq!(guarded(|| Ok(())), Status::Ok);
+        assert_eq!(last_error(), "internal fault: unknown");
+        assert_eq!(guarded(|| fails("ends\0early")), Status::Mesh);
+        assert_eq!(last_error(), "ends early");
+    }
+
+    #[test]
+    fn each_thread_has_its_own_message() {
+        let both_failed = Barrier::new(2);
+        let hear = |message: &'static str| {
+            let before = last_error();
+            assert_eq!(guarded(|| fails(message)), Status::Mesh);
+            both_failed.wait();
+            (before, last_error())
+        };
+        let heard = thread::scope(|scope| {
+            let threads = ["one", "other"].map(|message| scope.spawn(move || hear(message)));
+            threads.map(|thread| thread.join().unwrap())
+        });
+        let own = |message: &str| (String::new(), message.to_owned());
+        assert_eq!(heard, [own("one"), own("other")]);
+    }
+}

@@ -5,6 +5,8 @@ use std::{
     slice,
 };
 
+use bytemuck::{Pod, cast_slice};
+
 use crate::error::Failure;
 
 /// The value that a handle stands for.
@@ -56,6 +58,28 @@ pub(crate) unsafe fn array<'a, T>(name: &str, values: *const T, count: usize) ->
     Ok(unsafe { slice::from_raw_parts(values, count) })
 }
 
+/// Values of `elements` elements with so many numbers each, all of which must be finite.
+///
+/// # Safety
+/// `numbers` is NULL or points to as many numbers.
+pub(crate) unsafe fn finite_values<N: Pod, T: Pod>(
+    name: &str,
+    numbers: *const N,
+    each: usize,
+    elements: usize,
+    is_finite: impl Fn(N) -> bool,
+) -> Result<Vec<T>, Failure> {
+    // SAFETY: as the caller promises.
+    let numbers = unsafe { array(name, numbers, each.saturating_mul(elements)) }?;
+    match numbers.iter().position(|&number| !is_finite(number)) {
+        Some(bad) => {
+            let (element, place) = (bad / each, bad % each);
+            Err(Failure::argument(format!("{name}: number {place} of element {element} is not finite")))
+        }
+        None => Ok(cast_slice(numbers).to_vec()),
+    }
+}
+
 /// Hands `value` to the caller, who gives it back to [`free`].
 ///
 /// # Safety
@@ -77,6 +101,17 @@ pub(crate) unsafe fn put<T>(name: &str, place: *mut T, value: T) -> Result<(), F
     // SAFETY: as the caller promises.
     unsafe { place.write(value) };
     Ok(())
+}
+
+/// Writes a result where the caller wants it, if anywhere.
+///
+/// # Safety
+/// `place` is NULL or can be written to.
+pub(crate) unsafe fn put_if_wanted<T>(place: *mut T, value: T) {
+    if !place.is_null() {
+        // SAFETY: as the caller promises.
+        unsafe { place.write(value) };
+    }
 }
 
 /// Writes where values lie and how many there are.
@@ -101,6 +136,9 @@ pub(crate) unsafe fn put_slice<T>(
 /// # Safety
 /// `place` is NULL or can be written to as many times as there are values.
 pub(crate) unsafe fn fill<T: Copy>(name: &str, place: *mut T, values: &[T]) -> Result<(), Failure> {
+    if values.is_empty() {
+        return Ok(());
+    }
     if place.is_null() || !place.is_aligned() {
         return Err(Failure::argument(format!("{name} is no array")));
     }

@@ -15,13 +15,13 @@ use isochore_sculpt::{
 pub use query::{
     Arrow, History, Hit, Origin, isochore_session_closest_point, isochore_session_history,
     isochore_session_moved_volume, isochore_session_origin, isochore_session_pick, isochore_session_preview,
-    isochore_session_vertices_in_reach, isochore_session_volume,
+    isochore_session_vertices, isochore_session_vertices_in_reach, isochore_session_volume,
 };
-pub use receipt::{LockSkipped, StrokeReceipt};
+pub use receipt::{LockSkipped, MoveReceipt, StrokeReceipt};
 
 use crate::{
     error::{Failure, Status, guarded},
-    memory::{array, free, hand_over, hand_over_text, put, put_slice, reference, reference_mut, text},
+    memory::{array, free, hand_over, hand_over_text, put, put_if_wanted, put_slice, reference, reference_mut, text},
     mesh::Mesh,
     tool::Tool,
 };
@@ -32,6 +32,8 @@ pub struct Session {
     session: session::Session,
     /// By buffer what has changed since it was last asked for.
     changed: [Vec<Range>; 4],
+    /// The vertices that were last asked for.
+    vertices: Vec<u32>,
     /// The vertices in reach that were last asked for.
     reached: Vec<u32>,
     /// The preview that was last asked for.
@@ -152,7 +154,13 @@ pub unsafe extern "C" fn isochore_session_new(
         }
         let opened = session::Session::open(Arc::clone(&mesh.mesh), chosen)
             .map_err(|error| Failure::new(Status::Mesh, error))?;
-        let opened = Session { session: opened, changed: Default::default(), reached: Vec::new(), arrows: Vec::new() };
+        let opened = Session {
+            session: opened,
+            changed: Default::default(),
+            vertices: Vec::new(),
+            reached: Vec::new(),
+            arrows: Vec::new(),
+        };
         // SAFETY: as the caller promises.
         unsafe { hand_over("session", session, opened) }
     })
@@ -209,21 +217,24 @@ pub unsafe extern "C" fn isochore_session_begin_stroke(
 }
 
 /// Moves the tool along a screw to a pose: `at`, x, y, z in model units, and `rotate`, axis x, y, z and angle in degrees, absolute;
-/// NULL for none. `time` is the host's, in seconds.
+/// NULL for none. `time` is the host's, in seconds. `receipt` may be NULL.
 ///
 /// # Safety
-/// `session` is a handle; `at` has three values, `rotate` four where it is not NULL.
+/// `session` is a handle; `at` has three values, `rotate` four where it is not NULL; `receipt` can be written to where it is not NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_move_to(
     session: *mut Session,
     at: *const f64,
     rotate: *const f64,
     time: f64,
+    receipt: *mut MoveReceipt,
 ) -> Status {
     guarded(|| {
         // SAFETY: as the caller promises.
         let (session, pose) = unsafe { (reference_mut("session", session)?, pose(at, rotate)?) };
-        session.session.move_to(&pose, time)?;
+        let done = session.session.move_to(&pose, time)?;
+        // SAFETY: as the caller promises.
+        unsafe { put_if_wanted(receipt, done.into()) };
         Ok(())
     })
 }
@@ -250,7 +261,8 @@ pub unsafe extern "C" fn isochore_session_end_stroke(session: *mut Session, rece
         let session = unsafe { reference_mut("session", session) }?;
         let done = session.session.end_stroke()?;
         // SAFETY: as the caller promises.
-        if receipt.is_null() { Ok(()) } else { unsafe { put("receipt", receipt, done.into()) } }
+        unsafe { put_if_wanted(receipt, done.into()) };
+        Ok(())
     })
 }
 
@@ -274,7 +286,8 @@ pub unsafe extern "C" fn isochore_session_undo(session: *mut Session, is_done: *
         // SAFETY: as the caller promises.
         let done = unsafe { reference_mut("session", session) }?.session.undo()?;
         // SAFETY: as the caller promises.
-        if is_done.is_null() { Ok(()) } else { unsafe { put("is_done", is_done, done) } }
+        unsafe { put_if_wanted(is_done, done) };
+        Ok(())
     })
 }
 
@@ -288,7 +301,8 @@ pub unsafe extern "C" fn isochore_session_redo(session: *mut Session, is_done: *
         // SAFETY: as the caller promises.
         let done = unsafe { reference_mut("session", session) }?.session.redo()?;
         // SAFETY: as the caller promises.
-        if is_done.is_null() { Ok(()) } else { unsafe { put("is_done", is_done, done) } }
+        unsafe { put_if_wanted(is_done, done) };
+        Ok(())
     })
 }
 
@@ -389,7 +403,7 @@ pub unsafe extern "C" fn isochore_session_log(session: *const Session, recipe: *
 }
 
 /// The surface as a mesh of its own. With `lock`, with what the lock has added at the end of each stroke; else where the flow
-/// alone has taken it.
+/// alone has taken it. Which vertices it has, `isochore_session_vertices` tells.
 ///
 /// # Safety
 /// `session` is a handle; `mesh` can be written to.

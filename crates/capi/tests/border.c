@@ -95,11 +95,33 @@ static void recipes(void) {
     isochore_mesh_free(mesh);
 }
 
+/* Ten degrees a unit turn what lies nine units along the axis by ninety; points need no mesh, and those on the axis stay. */
+static void points(void) {
+    double carried[] = {1, 0, 0, 1, 0, 9, 0, 0, 3}, faulty[] = {0, 0, 0, 0, 0, NAN};
+    char *warnings = NULL;
+    int heard = 0;
+    CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, carried, 3, &warnings) == ISOCHORE_STATUS_OK);
+    CHECK(carried[0] == 1 && carried[1] == 0 && carried[2] == 0);
+    CHECK(fabs(carried[3]) < 1e-15 && fabs(carried[4] - 1) < 1e-15 && carried[5] == 9);
+    CHECK(carried[6] == 0 && carried[7] == 0 && carried[8] == 3);
+    CHECK(strstr(warnings, "[\"points enclose no volume") == warnings);
+    isochore_text_free(warnings);
+
+    CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, NULL, 0, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, NULL, 1, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, carried, SIZE_MAX / 2, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, faulty, 2, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(strstr(isochore_last_error(), "element 1"));
+    CHECK(isochore_run_points(TWIST, NULL, 0, stop, &heard, carried, 3, NULL) == ISOCHORE_STATUS_CANCELLED);
+    CHECK(heard > 0 && carried[0] == 1 && carried[5] == 9);
+}
+
 static void sessions(void) {
     const double start[] = {0, 0, 2}, end[] = {0.2, 0, 1}, down[] = {0, 0, -1}, above[] = {0.2, 0.2, 5}, nowhere[] = {NAN, 0, 0}, axis[] = {0, 0, 0, 90};
     IsochoreMesh *mesh = tetrahedron(), *moved = NULL, *again = NULL, *back = NULL;
     IsochoreTool *tool = NULL;
     IsochoreSession *session = NULL;
+    IsochoreMoveReceipt move;
     IsochoreStrokeReceipt receipt;
     IsochoreBuffers buffers;
     IsochoreHistory history;
@@ -127,13 +149,16 @@ static void sessions(void) {
     CHECK(isochore_session_end_stroke(session, NULL) == ISOCHORE_STATUS_STATE);
     CHECK(isochore_session_begin_stroke(session, tool, &UNREFINED) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_undo(session, &done) == ISOCHORE_STATUS_STATE);
-    CHECK(isochore_session_move_to(session, nowhere, NULL, 0) == ISOCHORE_STATUS_ARGUMENT);
-    CHECK(isochore_session_move_to(session, start, axis, 0) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_session_move_to(session, nowhere, NULL, 0, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_session_move_to(session, start, axis, 0, NULL) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(strstr(isochore_last_error(), "rotate") != NULL);
-    CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, start, NULL, 0, &move) == ISOCHORE_STATUS_OK);
+    CHECK(move.moved_vertices == 0);
+    CHECK(isochore_session_move_to(session, end, NULL, 1, &move) == ISOCHORE_STATUS_OK);
+    CHECK(move.moved_vertices > 0 && move.inserted_vertices == 0 && move.removed_vertices == 0 && move.flipped_edges == 0);
+    CHECK(!move.is_limited && move.refused_splits == 0);
     CHECK(isochore_session_end_stroke(session, &receipt) == ISOCHORE_STATUS_OK);
-    CHECK(receipt.moves == 1 && receipt.touched_vertices > 0 && receipt.has_volume);
+    CHECK(receipt.moves == 1 && receipt.touched_vertices == move.moved_vertices && receipt.has_volume);
     CHECK(receipt.lock_skipped == ISOCHORE_LOCK_SKIPPED_OFF && receipt.lock_max_shift == 0);
     CHECK(isochore_session_history(session, NULL) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(isochore_session_history(session, &history) == ISOCHORE_STATUS_OK);
@@ -178,6 +203,7 @@ static void queries(void) {
     IsochoreTool *tool = NULL;
     IsochoreSession *session = NULL;
     IsochoreOrigin origin;
+    IsochoreMoveReceipt move;
     IsochoreStrokeReceipt receipt;
     const uint32_t *vertices = NULL;
     const IsochoreArrow *arrows = NULL;
@@ -215,8 +241,8 @@ static void queries(void) {
     CHECK(isochore_session_moved_volume(session, &outward, &inward) == ISOCHORE_STATUS_OK && outward == 0 && inward == 0);
     CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
     isochore_tool_free(tool);
-    CHECK(isochore_session_move_to(session, above, NULL, 0) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, below, turn, 1) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, above, NULL, 0, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, below, turn, 1, NULL) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_moved_volume(session, &outward, &inward) == ISOCHORE_STATUS_OK && outward > 0 && inward > 0);
     CHECK(isochore_session_cancel_stroke(session) == ISOCHORE_STATUS_OK);
 
@@ -226,14 +252,21 @@ static void queries(void) {
     for (int stroke = 0; stroke < 3; stroke++) {
         CHECK(isochore_tool_new("ball", BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
         CHECK(isochore_session_begin_stroke(session, tool, &strokes[stroke]) == ISOCHORE_STATUS_OK);
-        CHECK(isochore_session_move_to(session, above, NULL, 0) == ISOCHORE_STATUS_OK);
-        CHECK(isochore_session_move_to(session, below, NULL, 1) == ISOCHORE_STATUS_OK);
+        CHECK(isochore_session_move_to(session, above, NULL, 0, NULL) == ISOCHORE_STATUS_OK);
+        CHECK(isochore_session_move_to(session, below, NULL, 1, &move) == ISOCHORE_STATUS_OK);
         CHECK(isochore_session_end_stroke(session, &receipt) == ISOCHORE_STATUS_OK);
-        CHECK((receipt.inserted_vertices > 0) == (stroke == 2));
-        CHECK(receipt.is_limited == (stroke == 1));
+        CHECK((move.inserted_vertices > 0) == (stroke == 2));
+        CHECK(move.is_limited == (stroke == 1));
+        CHECK(receipt.inserted_vertices == move.inserted_vertices && receipt.removed_vertices == move.removed_vertices);
+        CHECK(receipt.flipped_edges == move.flipped_edges && receipt.is_limited == move.is_limited);
         CHECK(receipt.lock_skipped == ISOCHORE_LOCK_SKIPPED_NO && receipt.lock_max_shift > 0);
         isochore_tool_free(tool);
     }
+    CHECK(isochore_session_vertices(session, &vertices, &count) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_export(session, false, &mesh) == ISOCHORE_STATUS_OK);
+    CHECK(count == isochore_mesh_vertex_count(mesh) && count == 4 + receipt.inserted_vertices - receipt.removed_vertices);
+    for (size_t i = 1; i < count; i++) CHECK(vertices[i - 1] < vertices[i]);
+    isochore_mesh_free(mesh);
     strokes[0].longest_edge = -1;
     CHECK(isochore_session_begin_stroke(session, NULL, &strokes[0]) == ISOCHORE_STATUS_ARGUMENT);
     isochore_session_free(session);
@@ -270,8 +303,8 @@ static void masks(void) {
     CHECK(isochore_session_freeze_edges(session, vertices, 4) == ISOCHORE_STATUS_OK);
     CHECK(isochore_tool_new("ball", WIDE_BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, start, NULL, 0, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, end, NULL, 1, NULL) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_end_stroke(session, &receipt) == ISOCHORE_STATUS_OK && receipt.inserted_vertices == 0);
     CHECK(isochore_session_export(session, false, &moved) == ISOCHORE_STATUS_OK);
     for (size_t vertex = 0; vertex < 4; vertex++) {
@@ -294,8 +327,8 @@ static IsochoreMesh *refined_by_a_press(const IsochoreMesh *mesh, bool lock) {
     CHECK(isochore_tool_new("ball", WIDE_BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, start, NULL, 0) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, end, NULL, 1) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, start, NULL, 0, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, end, NULL, 1, NULL) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_end_stroke(session, NULL) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_export(session, lock, &refined) == ISOCHORE_STATUS_OK);
     isochore_session_free(session);
@@ -395,6 +428,7 @@ int main(int count, char **arguments) {
     meshes(arguments[1]);
     faulty_meshes();
     recipes();
+    points();
     sessions();
     queries();
     masks();

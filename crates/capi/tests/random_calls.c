@@ -109,8 +109,15 @@ static void look_at(IsochoreSession *session) {
 /* The surface as a mesh of its own, and back through all that a mesh can tell. */
 static void export_from(IsochoreSession *session) {
     IsochoreMesh *mesh = NULL;
+    const uint32_t *vertices = NULL;
+    size_t count = 0;
     double volume = 0;
     CHECK(isochore_session_export(session, below(2), &mesh) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_vertices(session, &vertices, &count) == ISOCHORE_STATUS_OK);
+    CHECK(count == isochore_mesh_vertex_count(mesh));
+    for (size_t i = 1; i < count; i++) {
+        CHECK(vertices[i - 1] < vertices[i]);
+    }
     CHECK(isochore_mesh_volume(mesh, &volume) == ISOCHORE_STATUS_OK && isfinite(volume));
     size_t values = isochore_mesh_vertex_count(mesh) * isochore_mesh_skin_influences(mesh);
     if (values > 0) {
@@ -175,8 +182,8 @@ static void make_faults(IsochoreSession *session, IsochoreTool *tool) {
     const uint32_t beyond = 1u << 31;
     IsochoreOrigin origin;
     IsochoreMesh *mesh = NULL;
-    CHECK(isochore_session_move_to(session, nowhere, NULL, 1e9) != ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, NULL, NULL, 1e9) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_session_move_to(session, nowhere, NULL, 1e9, NULL) != ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, NULL, NULL, 1e9, NULL) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(isochore_session_preview(session, tool, CORNERS, turn, CORNERS, NULL, 4, NULL, NULL) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(isochore_session_origin(session, UINT32_MAX, &origin) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(isochore_session_freeze_edges(session, &beyond, 1) == ISOCHORE_STATUS_ARGUMENT);
@@ -199,6 +206,7 @@ int main(void) {
         const IsochoreStrokeOptions options = {below(4) == 0, 0.4 + 0.4 * number(), 200, keep, below(2)};
         uint32_t frozen[2] = {below(8), below(8)};
         IsochoreStatus status = ISOCHORE_STATUS_OK;
+        IsochoreMoveReceipt move;
         IsochoreStrokeReceipt receipt;
         bool is_done;
         memset(&receipt, 0, sizeof receipt);
@@ -213,7 +221,7 @@ int main(void) {
         case 4:
         case 5:
             walk(at);
-            status = isochore_session_move_to(session, at, below(2) ? turn : NULL, time += number());
+            status = isochore_session_move_to(session, at, below(2) ? turn : NULL, time += number(), &move);
             break;
         case 6:
             status = isochore_session_end_stroke(session, below(4) ? &receipt : NULL);

@@ -2,13 +2,13 @@
 
 use std::{ffi::c_char, sync::Arc};
 
-use bytemuck::{Pod, cast_slice};
+use bytemuck::cast_slice;
 use isochore_mesh::TriMesh;
 
 use super::Mesh;
 use crate::{
     error::{Failure, Status, guarded},
-    memory::{array, hand_over_text, put_slice, reference, reference_mut, text},
+    memory::{array, finite_values, hand_over_text, put_slice, reference, reference_mut, text},
 };
 
 /// Copies texture coordinates: u, v of the three corners of each triangle. Sets are numbered from 0; the one after the last is added.
@@ -21,7 +21,7 @@ pub unsafe extern "C" fn isochore_mesh_set_uvs(mesh: *mut Mesh, set: usize, uvs:
         // SAFETY: as the caller promises.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
         // SAFETY: as the caller promises.
-        let uvs = unsafe { values("uvs", uvs, 6, mesh.mesh.triangles.len(), f64::is_finite) }?;
+        let uvs = unsafe { finite_values("uvs", uvs, 6, mesh.mesh.triangles.len(), f64::is_finite) }?;
         let sets = &mut Arc::make_mut(&mut mesh.mesh).corner.uvs;
         match (set, sets.len()) {
             (set, count) if set < count => sets[set] = uvs,
@@ -60,7 +60,7 @@ pub unsafe extern "C" fn isochore_mesh_set_normals(mesh: *mut Mesh, normals: *co
         // SAFETY: as the caller promises.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
         // SAFETY: as the caller promises.
-        let normals = unsafe { values("normals", normals, 9, mesh.mesh.triangles.len(), f32::is_finite) }?;
+        let normals = unsafe { finite_values("normals", normals, 9, mesh.mesh.triangles.len(), f32::is_finite) }?;
         Arc::make_mut(&mut mesh.mesh).corner.normals = normals;
         Ok(())
     })
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn isochore_mesh_set_vertex_colors(mesh: *mut Mesh, colors
         // SAFETY: as the caller promises.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
         // SAFETY: as the caller promises.
-        let colors = unsafe { values("colors", colors, 4, mesh.mesh.positions.len(), f64::is_finite) }?;
+        let colors = unsafe { finite_values("colors", colors, 4, mesh.mesh.positions.len(), f64::is_finite) }?;
         Arc::make_mut(&mut mesh.mesh).vertex.colors = colors;
         Ok(())
     })
@@ -177,26 +177,4 @@ pub unsafe extern "C" fn isochore_mesh_material_name(
         // SAFETY: as the caller promises.
         unsafe { hand_over_text("name", name, known) }
     })
-}
-
-/// Values of `elements` elements with so many numbers each, all of which must be finite.
-///
-/// # Safety
-/// `numbers` is NULL or points to as many numbers.
-unsafe fn values<N: Pod, T: Pod>(
-    name: &str,
-    numbers: *const N,
-    each: usize,
-    elements: usize,
-    is_finite: impl Fn(N) -> bool,
-) -> Result<Vec<T>, Failure> {
-    // SAFETY: as the caller promises.
-    let numbers = unsafe { array(name, numbers, each * elements) }?;
-    match numbers.iter().position(|&number| !is_finite(number)) {
-        Some(bad) => {
-            let (element, place) = (bad / each, bad % each);
-            Err(Failure::argument(format!("{name}: number {place} of element {element} is not finite")))
-        }
-        None => Ok(cast_slice(numbers).to_vec()),
-    }
 }

@@ -64,6 +64,26 @@ pub struct History {
     pub bytes: usize,
 }
 
+/// The vertices that were not removed, in ascending order: vertex i of `isochore_session_export` is number i of these in the session.
+/// They are in the session's own memory, until it is asked again.
+///
+/// # Safety
+/// `session` is a handle; `vertices` and `count` can be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn isochore_session_vertices(
+    session: *mut Session,
+    vertices: *mut *const u32,
+    count: *mut usize,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let session = unsafe { reference_mut("session", session) }?;
+        session.vertices = session.session.vertices().collect();
+        // SAFETY: as the caller promises.
+        unsafe { put_slice("vertices", vertices, count, &session.vertices) }
+    })
+}
+
 /// The first point of the surface on a ray; `is_hit` tells whether there is one.
 ///
 /// # Safety

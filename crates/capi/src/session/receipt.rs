@@ -1,6 +1,37 @@
-//! What strokes did.
+//! What moves and strokes did.
 
 use isochore_sculpt::session;
+
+/// What one move did.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct MoveReceipt {
+    /// Vertices that moved.
+    pub moved_vertices: usize,
+    /// Vertices that splits inserted.
+    pub inserted_vertices: usize,
+    /// Vertices that collapses removed.
+    pub removed_vertices: usize,
+    /// Edges that were flipped.
+    pub flipped_edges: usize,
+    /// Whether the limit on triangles kept edges from being split.
+    pub is_limited: bool,
+    /// Edges that stay too long because the stroke has stirred the surface there too much for a split to help.
+    pub refused_splits: usize,
+}
+
+impl From<session::MoveReceipt> for MoveReceipt {
+    fn from(done: session::MoveReceipt) -> Self {
+        Self {
+            moved_vertices: done.moved_vertices,
+            inserted_vertices: done.inserted_vertices,
+            removed_vertices: done.removed_vertices,
+            flipped_edges: done.flipped_edges,
+            is_limited: done.is_limited,
+            refused_splits: done.refused_splits,
+        }
+    }
+}
 
 /// Why a stroke ended without its lock.
 #[repr(C)]
