@@ -35,6 +35,7 @@ use std::path::Path;
 pub use format::Format;
 pub use point_stream::{PointStream, PointStreamError};
 pub use read_error::{LineProblem, ParseError, ReadError};
+pub use split::SplitVertices;
 pub use write_error::WriteError;
 
 use crate::{CornerAttributes, TriMesh};

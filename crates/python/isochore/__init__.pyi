@@ -22,7 +22,7 @@ _Progress = Callable[[str, float], object]
 """Called on the calling thread every 50 ms with the stage at work and its share done, 0 to 1; returning False stops the work."""
 
 class _HasVerticesAndFaces(Protocol):
-    """A mesh of another library, such as `trimesh.Trimesh`."""
+    """A mesh of another library, such as `trimesh.Trimesh`, of which `visual` is taken too, as `Mesh.from_trimesh` tells."""
 
     vertices: Any
     faces: Any
@@ -53,14 +53,20 @@ class Mesh:
         uvs: Iterable[ArrayLike] | None = None,
         normals: ArrayLike | None = None,
         colors: ArrayLike | None = None,
+        corner_colors: ArrayLike | None = None,
         skin: tuple[ArrayLike, ArrayLike] | None = None,
+        materials: Sequence[str] | None = None,
+        triangle_materials: ArrayLike | None = None,
     ) -> Self:
         """Copies the arrays.
 
         positions: (V, 3) numbers, model units. triangles: (T, 3) integers, counter-clockwise seen from outside.
-        uvs: sets of texture coordinates, (T, 3, 2) each, by corner, so that seams do not open the surface. normals: for
-        shading, by corner, (T, 3, 3), of any length; they turn with the surface and are kept in single precision. colors: (V, 4), linear RGBA, 0 to 1.
+        uvs: sets of texture coordinates, (T, 3, 2) each, by corner, so that seams do not open the surface.
+        normals: for shading, by corner, (T, 3, 3), of any length; they turn with the surface and are kept in single precision.
+        colors: by vertex, (V, 4), linear RGBA, 0 to 1. corner_colors: by corner, (T, 3, 4), where they differ across seams.
         skin: joints (V, K), integers, and their weights (V, K), which are divided by the sum of each row; weight 0 is for places not used.
+        materials: names; an empty one stands for triangles without a material. triangle_materials: (T,) indices into them; each needs
+        the other.
         """
 
     @classmethod
@@ -73,10 +79,33 @@ class Mesh:
 
     @classmethod
     def from_trimesh(cls, mesh: _HasVerticesAndFaces) -> Mesh:
-        """The vertices and faces of a `trimesh.Trimesh` or the like."""
+        """The mesh of a `trimesh.Trimesh`, or of anything with `vertices` (V, 3) and `faces` (T, 3).
+
+        Where its `visual` has a texture or colors, texture coordinates, colors and names of materials come along, and vertices that
+        trimesh has twice at a seam are welded, so that the surface is closed; the numbers of vertices after them change then. Images
+        and normals stay behind: trimesh derives normals from faces.
+        """
 
     def to_trimesh(self) -> Any:
-        """A `trimesh.Trimesh` with the same vertices and faces in the same order."""
+        """A `trimesh.Trimesh` of the same triangles in the same order.
+
+        The first set of texture coordinates, colors, in 8 bits, and names of materials come along. Vertices are the same in the same
+        order, followed by copies of those at seams, which trimesh needs: `from_trimesh` welds them. Give the visual its images anew:
+        `result.visual.material = scan.visual.material`.
+        """
+
+    def welded(self) -> Mesh:
+        """The same surface with the vertices of open edges made one where they are at the same position.
+
+        Closed surfaces that touch stay apart. Colors that differ move to the corners; of differing skins the first one stays.
+        """
+
+    def split_at_seams(self) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+        """What libraries and renderers need that keep all attributes by vertex: one for each combination of UVs, normals and colors.
+
+        The vertex of this mesh that each of these is, (R,), and triangles (T, 3) of them. The first V are the vertices of the mesh.
+        An attribute by corner goes to them by `values[triangles] = mesh.uvs[0]`.
+        """
 
     def write(self, path: str | PathLike[str]) -> None:
         """Writes a mesh file in the format of its extension, whole or not at all."""
@@ -103,6 +132,18 @@ class Mesh:
     @property
     def colors(self) -> NDArray[np.float64] | None:
         """(V, 4), linear RGBA by vertex; a view."""
+
+    @property
+    def corner_colors(self) -> NDArray[np.float64] | None:
+        """(T, 3, 4), linear RGBA by corner, where colors differ across seams; a view."""
+
+    @property
+    def materials(self) -> list[str]:
+        """Names; an empty one stands for triangles without a material."""
+
+    @property
+    def triangle_materials(self) -> NDArray[np.uint32] | None:
+        """(T,) indices into `materials`; a view."""
 
     @property
     def skin(self) -> tuple[NDArray[np.uint32], NDArray[np.float64]] | None:

@@ -1,6 +1,7 @@
 //! isochore for Python: the module `isochore._native`, which the package `isochore` presents.
 
 mod arrays;
+mod attributes;
 mod distance;
 mod error;
 mod keys;

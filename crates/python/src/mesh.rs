@@ -2,21 +2,21 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use bytemuck::cast_slice;
-use glam::{DVec2, DVec3, DVec4};
+use bytemuck::{allocation::cast_vec, cast_slice};
+use glam::DVec2;
 use isochore_mesh::{
     ClosedMesh, SelfIntersections, SkinTable, TriMesh,
-    io::{self, Format},
+    io::{self, Format, SplitVertices},
 };
-use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::{
-    exceptions::PyTypeError,
     prelude::*,
-    types::{IntoPyDict, PyBytes, PyType},
+    types::{PyBytes, PyType},
 };
 
 use crate::{
-    arrays::{check_shape, contiguous, finite_numbers, index, indices, numbers, points, triangles, view},
+    arrays::{contiguous, points, triangles, view},
+    attributes,
     error::Failure,
     watch::watched,
 };
@@ -31,48 +31,44 @@ pub(crate) struct Mesh {
 #[pymethods]
 impl Mesh {
     #[new]
-    #[pyo3(signature = (positions, triangles, *, uvs = None, normals = None, colors = None, skin = None))]
+    #[pyo3(signature = (
+        positions, triangles, *, uvs = None, normals = None, colors = None, corner_colors = None, skin = None,
+        materials = None, triangle_materials = None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "Python names them")]
     fn new(
         positions: &Bound<'_, PyAny>,
         triangles: &Bound<'_, PyAny>,
         uvs: Option<Vec<Bound<'_, PyAny>>>,
         normals: Option<&Bound<'_, PyAny>>,
         colors: Option<&Bound<'_, PyAny>>,
+        corner_colors: Option<&Bound<'_, PyAny>>,
         skin: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
+        materials: Option<Vec<String>>,
+        triangle_materials: Option<&Bound<'_, PyAny>>,
     ) -> Result<Self, Failure> {
         let mut mesh = geometry(positions, triangles)?;
-        for uvs in uvs.unwrap_or_default() {
-            let uvs = contiguous::<f64>(&uvs)?;
-            check_shape("uvs", uvs.shape(), &[Some(mesh.triangles.len()), Some(3), Some(2)])?;
-            mesh.corner.uvs.push(cast_slice::<f64, [DVec2; 3]>(finite_numbers("uvs", &uvs)?).to_vec());
-        }
+        uvs.iter().flatten().try_for_each(|uvs| attributes::add_uvs(&mut mesh, uvs))?;
         if let Some(normals) = normals {
-            let normals = contiguous::<f64>(normals)?;
-            check_shape("normals", normals.shape(), &[Some(mesh.triangles.len()), Some(3), Some(3)])?;
-            let given: &[[DVec3; 3]] = cast_slice(numbers("normals", &normals)?);
-            let unit = |(triangle, corners): (usize, &[DVec3; 3])| match corners.map(DVec3::try_normalize) {
-                [Some(a), Some(b), Some(c)] => Ok([a, b, c].map(|normal| normal.as_vec3())),
-                _ => Err(Failure::Argument(format!("normals: one of triangle {triangle} has no direction"))),
-            };
-            mesh.corner.normals = given.iter().enumerate().map(unit).collect::<Result<_, _>>()?;
+            attributes::set_normals(&mut mesh, normals)?;
         }
         if let Some(colors) = colors {
-            let colors = contiguous::<f64>(colors)?;
-            check_shape("colors", colors.shape(), &[Some(mesh.positions.len()), Some(4)])?;
-            mesh.vertex.colors =
-                finite_numbers("colors", &colors)?.as_chunks::<4>().0.iter().map(|c| DVec4::from(*c)).collect();
+            attributes::set_colors(&mut mesh, colors)?;
+        }
+        if let Some(colors) = corner_colors {
+            attributes::set_corner_colors(&mut mesh, colors)?;
         }
         if let Some((joints, weights)) = skin {
-            let joints = indices("joints", &joints)?;
-            let weights = contiguous::<f64>(&weights)?;
-            check_shape("joints", joints.shape(), &[Some(mesh.positions.len()), None])?;
-            check_shape("weights", weights.shape(), &[Some(mesh.positions.len()), Some(joints.shape()[1])])?;
-            let columns = joints.shape()[1];
-            let joints = numbers("joints", &joints)?.iter().map(|&joint| index("joints", joint));
-            let joints: Vec<u32> = joints.collect::<Result<_, _>>()?;
-            let weights = numbers("weights", &weights)?;
-            let set = mesh.vertex.set_skin_table(mesh.positions.len(), columns, &joints, weights);
-            set.map_err(|error| Failure::Argument(error.to_string()))?;
+            attributes::set_skin(&mut mesh, &joints, &weights)?;
+        }
+        match (materials.unwrap_or_default(), triangle_materials) {
+            (names, Some(of_triangles)) => attributes::set_materials(&mut mesh, names, of_triangles)?,
+            (names, None) if names.is_empty() => {}
+            (_, None) => {
+                return Err(Failure::Argument(
+                    "materials come with triangle_materials, which tell who has them".into(),
+                ));
+            }
         }
         Ok(Self { mesh: mesh.into() })
     }
@@ -98,12 +94,22 @@ impl Mesh {
         Ok(Self { mesh: mesh_of(mesh)? })
     }
 
-    /// A `trimesh.Trimesh` with the same vertices and faces in the same order.
+    /// A `trimesh.Trimesh` of the same surface.
     fn to_trimesh<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        let py = slf.py();
-        let options = [("process", false)].into_py_dict(py)?;
-        let arrays = (Self::positions(slf), Self::triangles(slf));
-        py.import("trimesh")?.getattr("Trimesh")?.call(arrays, Some(&options))
+        slf.py().import("isochore._trimesh")?.call_method1("to_trimesh", (slf,))
+    }
+
+    /// The same surface with the vertices of open edges made one where they are at the same position.
+    fn welded(&self, py: Python<'_>) -> Self {
+        Self { mesh: py.detach(|| TriMesh::clone(&self.mesh).welded_at_boundary().into()) }
+    }
+
+    /// A vertex for every combination of what the corners at it carry: the vertex of the mesh that each is, and triangles of these.
+    fn split_at_seams<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let SplitVertices { vertices, triangles, .. } = py.detach(|| SplitVertices::of(&self.mesh));
+        let count = triangles.len();
+        let triangles = cast_vec::<[u32; 3], u32>(triangles).into_pyarray(py).reshape([count, 3])?;
+        Ok((vertices.into_pyarray(py).into_any(), triangles.into_any()))
     }
 
     /// Writes a mesh file in the format of its extension, whole or not at all.
@@ -154,8 +160,26 @@ impl Mesh {
     }
 
     #[getter]
+    fn corner_colors<'py>(slf: &Bound<'py, Self>) -> Option<Bound<'py, PyAny>> {
+        let colors = &slf.get().mesh.corner.colors;
+        let owner = slf.clone().into_any();
+        (!colors.is_empty()).then(|| view::<f64>(owner, cast_slice(colors.as_flattened()), &[colors.len(), 3, 4]))
+    }
+
+    #[getter]
+    fn materials(&self) -> Vec<&str> {
+        self.mesh.materials.iter().map(String::as_str).collect()
+    }
+
+    #[getter]
+    fn triangle_materials<'py>(slf: &Bound<'py, Self>) -> Option<Bound<'py, PyAny>> {
+        let numbers = &slf.get().mesh.triangle_materials;
+        (!numbers.is_empty()).then(|| view(slf.clone().into_any(), numbers, &[numbers.len()]))
+    }
+
+    #[getter]
     fn skin<'py>(&self, py: Python<'py>) -> PyResult<Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>> {
-        let SkinTable { per_vertex, joints, weights } = self.mesh.vertex.skin_table();
+        let SkinTable { per_vertex, joints, weights } = py.detach(|| self.mesh.vertex.skin_table());
         if per_vertex == 0 {
             return Ok(None);
         }
@@ -167,24 +191,24 @@ impl Mesh {
     }
 
     #[getter]
-    fn volume(&self) -> f64 {
-        self.mesh.volume()
+    fn volume(&self, py: Python<'_>) -> f64 {
+        py.detach(|| self.mesh.volume())
     }
 
     #[getter]
-    fn area(&self) -> f64 {
-        self.mesh.area()
+    fn area(&self, py: Python<'_>) -> f64 {
+        py.detach(|| self.mesh.area())
     }
 
     #[getter]
-    fn bounds(&self) -> [[f64; 3]; 2] {
-        let bounds = self.mesh.bounds();
+    fn bounds(&self, py: Python<'_>) -> [[f64; 3]; 2] {
+        let bounds = py.detach(|| self.mesh.bounds());
         [bounds.min.to_array(), bounds.max.to_array()]
     }
 
     #[getter]
-    fn is_closed(&self) -> bool {
-        ClosedMesh::new(&self.mesh).is_ok()
+    fn is_closed(&self, py: Python<'_>) -> bool {
+        py.detach(|| ClosedMesh::new(&self.mesh).is_ok())
     }
 
     /// Indices of the triangles that intersect others, exactly.
@@ -203,22 +227,20 @@ impl Mesh {
     }
 }
 
-/// The mesh that `object` is, or that its `vertices` and `faces` make.
+/// The mesh that `object` is, or that of trimesh or the like it stands for.
 pub(crate) fn mesh_of(object: &Bound<'_, PyAny>) -> Result<Arc<TriMesh>, Failure> {
     if let Ok(mesh) = object.cast::<Mesh>() {
         return Ok(Arc::clone(&mesh.get().mesh));
     }
-    let (Ok(vertices), Ok(faces)) = (object.getattr("vertices"), object.getattr("faces")) else {
-        let text = format!("a mesh, or what has vertices and faces, is wanted, not {}", object.get_type().name()?);
-        return Err(Failure::Raised(PyTypeError::new_err(text)));
-    };
-    Ok(geometry(&vertices, &faces)?.into())
+    let read = object.py().import("isochore._trimesh")?.call_method1("from_trimesh", (object,))?;
+    let mesh = read.cast::<Mesh>().map_err(PyErr::from)?;
+    Ok(Arc::clone(&mesh.get().mesh))
 }
 
 fn geometry(positions: &Bound<'_, PyAny>, indices: &Bound<'_, PyAny>) -> Result<TriMesh, Failure> {
     let positions = contiguous::<f64>(positions)?;
     let mesh = TriMesh::new(points("positions", &positions)?.to_vec(), triangles(indices)?);
-    mesh.check_valid()?;
+    positions.py().detach(|| mesh.check_valid())?;
     Ok(mesh)
 }
 

@@ -99,6 +99,43 @@ def test_attributes_come_back():
         isochore.Mesh(np.eye(3), [[0, 1, 2]], colors=np.full((3, 4), np.inf))
 
 
+def test_materials_come_back_and_go_into_files(cube):
+    numbers = [0] * 6 + [2] * 6
+    mesh = isochore.Mesh(cube.positions, cube.triangles, materials=["bark", "", "leaf"], triangle_materials=numbers)
+    assert mesh.materials == ["bark", "", "leaf"] and mesh.triangle_materials.tolist() == numbers
+    assert mesh.triangle_materials.dtype == np.uint32 and np.shares_memory(mesh.triangle_materials, mesh.triangle_materials)
+    assert cube.materials == [] and cube.triangle_materials is None
+    read = isochore.Mesh.from_bytes(mesh.to_bytes("glb"), "glb")
+    names = np.array(read.materials)[read.triangle_materials]
+    # The file has the triangles of one material after those of the other.
+    assert sorted(names) == ["bark"] * 6 + ["leaf"] * 6
+    # Each part of a refined triangle has its material.
+    stroke = {"kind": "twist", "origin": [0, 0, 0], "axis": [0, 0, 1], "degrees_per_unit": 60.0}
+    recipe = {"recipe": 1, "target": {"mesh": "cube"}, "stroke": [stroke], "refine": {"max_edge": 0.3}}
+    twisted, rest, _ = isochore.run(recipe, meshes={"cube": mesh})
+    area = lambda chosen: isochore.Mesh(rest.positions, rest.triangles[chosen]).area
+    assert twisted.materials == mesh.materials and len(twisted.triangles) > 100
+    assert [area(twisted.triangle_materials == number) for number in (0, 2)] == pytest.approx([3, 3], abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        ({"materials": ["a"]}, "materials come with triangle_materials"),
+        ({"triangle_materials": [0]}, "triangle 0 has the material 0 of 0"),
+        ({"materials": ["a"], "triangle_materials": [1]}, "triangle 0 has the material 1 of 1"),
+        ({"materials": ["a"], "triangle_materials": [-1]}, "triangle 0 has the material -1 of 1"),
+        ({"materials": ["a"], "triangle_materials": [0, 0]}, r"triangle_materials must have the shape \(1\)"),
+        ({"materials": ["a"], "triangle_materials": [0.5]}, "triangle_materials must be integers"),
+        ({"corner_colors": np.zeros((3, 4))}, r"corner_colors must have the shape \(1, 3, 4\)"),
+        ({"corner_colors": np.full((1, 3, 4), np.nan)}, "corner_colors: the number at 0 is not finite"),
+    ],
+)
+def test_wrong_attributes_are_refused(given, words):
+    with pytest.raises(ValueError, match=words):
+        isochore.Mesh(np.eye(3), [[0, 1, 2]], **given)
+
+
 def test_normals_turn_with_the_surface(cube):
     flat = np.cross(*(cube.positions[cube.triangles[:, side]] - cube.positions[cube.triangles[:, 0]] for side in (1, 2)))
     mesh = isochore.Mesh(cube.positions, cube.triangles, normals=np.repeat(flat, 3, axis=0).reshape(-1, 3, 3))

@@ -3,17 +3,22 @@
 use crate::TriMesh;
 
 /// A vertex for every combination of corner attributes that it has.
-pub(super) struct SplitVertices {
+#[derive(Debug, Clone)]
+pub struct SplitVertices {
     /// The vertex of the mesh that each split one comes from. The first ones are the mesh's own, in their order.
-    pub(super) vertices: Vec<u32>,
+    pub vertices: Vec<u32>,
     /// Triangles of split vertices.
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub triangles: Vec<[u32; 3]>,
     /// A corner, as `3 t + k`, that uses each split vertex; none where no triangle does.
     corners: Vec<Option<u32>>,
 }
 
 impl SplitVertices {
-    pub(super) fn of(mesh: &TriMesh) -> Self {
+    /// Splits the vertices of `mesh` where the corners at them carry different attributes.
+    ///
+    /// # Panics
+    /// If an index is out of range.
+    pub fn of(mesh: &TriMesh) -> Self {
         let count = mesh.positions.len();
         let mut split = Self {
             vertices: (0..count as u32).collect(),

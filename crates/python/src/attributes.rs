@@ -1,0 +1,92 @@
+//! What a mesh carries besides its geometry, from NumPy arrays.
+
+use bytemuck::cast_slice;
+use glam::{DVec2, DVec3, DVec4, Vec3};
+use isochore_mesh::TriMesh;
+use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::{
+    arrays::{check_shape, contiguous, finite_numbers, index, indices, numbers},
+    error::Failure,
+};
+
+/// One more set of texture coordinates, (T, 3, 2).
+pub(crate) fn add_uvs(mesh: &mut TriMesh, uvs: &Bound<'_, PyAny>) -> Result<(), Failure> {
+    let uvs = contiguous::<f64>(uvs)?;
+    check_shape("uvs", uvs.shape(), &[Some(mesh.triangles.len()), Some(3), Some(2)])?;
+    mesh.corner.uvs.push(cast_slice::<f64, [DVec2; 3]>(finite_numbers("uvs", &uvs)?).to_vec());
+    Ok(())
+}
+
+/// Shading normals, (T, 3, 3), of any length.
+pub(crate) fn set_normals(mesh: &mut TriMesh, normals: &Bound<'_, PyAny>) -> Result<(), Failure> {
+    let normals = contiguous::<f64>(normals)?;
+    check_shape("normals", normals.shape(), &[Some(mesh.triangles.len()), Some(3), Some(3)])?;
+    let given: &[[DVec3; 3]] = cast_slice(numbers("normals", &normals)?);
+    let unit = |(triangle, corners): (usize, &[DVec3; 3])| match corners.map(DVec3::try_normalize) {
+        [Some(a), Some(b), Some(c)] => Ok([a, b, c].map(|normal| normal.as_vec3())),
+        _ => Err(Failure::Argument(format!("normals: one of triangle {triangle} has no direction"))),
+    };
+    mesh.corner.normals = given.iter().enumerate().map(unit).collect::<Result<Vec<[Vec3; 3]>, _>>()?;
+    Ok(())
+}
+
+/// Colors by vertex, (V, 4).
+pub(crate) fn set_colors(mesh: &mut TriMesh, colors: &Bound<'_, PyAny>) -> Result<(), Failure> {
+    let colors = contiguous::<f64>(colors)?;
+    check_shape("colors", colors.shape(), &[Some(mesh.positions.len()), Some(4)])?;
+    mesh.vertex.colors = rgba("colors", &colors)?;
+    Ok(())
+}
+
+/// Colors by corner, (T, 3, 4).
+pub(crate) fn set_corner_colors(mesh: &mut TriMesh, colors: &Bound<'_, PyAny>) -> Result<(), Failure> {
+    let colors = contiguous::<f64>(colors)?;
+    check_shape("corner_colors", colors.shape(), &[Some(mesh.triangles.len()), Some(3), Some(4)])?;
+    mesh.corner.colors = rgba("corner_colors", &colors)?.as_chunks().0.to_vec();
+    Ok(())
+}
+
+fn rgba(name: &str, colors: &PyReadonlyArrayDyn<'_, f64>) -> Result<Vec<DVec4>, Failure> {
+    Ok(finite_numbers(name, colors)?.as_chunks::<4>().0.iter().map(|c| DVec4::from(*c)).collect())
+}
+
+/// Joints and weights, (V, K) each.
+pub(crate) fn set_skin(
+    mesh: &mut TriMesh,
+    joints: &Bound<'_, PyAny>,
+    weights: &Bound<'_, PyAny>,
+) -> Result<(), Failure> {
+    let joints = indices("joints", joints)?;
+    let weights = contiguous::<f64>(weights)?;
+    check_shape("joints", joints.shape(), &[Some(mesh.positions.len()), None])?;
+    check_shape("weights", weights.shape(), &[Some(mesh.positions.len()), Some(joints.shape()[1])])?;
+    let columns = joints.shape()[1];
+    let joints = numbers("joints", &joints)?.iter().map(|&joint| index("joints", joint));
+    let joints: Vec<u32> = joints.collect::<Result<_, _>>()?;
+    let weights = numbers("weights", &weights)?;
+    let set = mesh.vertex.set_skin_table(mesh.positions.len(), columns, &joints, weights);
+    set.map_err(|error| Failure::Argument(error.to_string()))
+}
+
+/// Names of materials, and by triangle, (T,), which of them it has.
+pub(crate) fn set_materials(
+    mesh: &mut TriMesh,
+    names: Vec<String>,
+    of_triangles: &Bound<'_, PyAny>,
+) -> Result<(), Failure> {
+    let of_triangles = indices("triangle_materials", of_triangles)?;
+    check_shape("triangle_materials", of_triangles.shape(), &[Some(mesh.triangles.len())])?;
+    let known = |(triangle, &number): (usize, &i64)| match u32::try_from(number) {
+        Ok(material) if (material as usize) < names.len() => Ok(material),
+        _ => Err(Failure::Argument(format!(
+            "triangle_materials: triangle {triangle} has the material {number} of {}",
+            names.len()
+        ))),
+    };
+    let numbers = numbers("triangle_materials", &of_triangles)?;
+    mesh.triangle_materials = numbers.iter().enumerate().map(known).collect::<Result<_, _>>()?;
+    mesh.materials = names;
+    Ok(())
+}
