@@ -311,10 +311,11 @@ class Session:
     def log(self) -> dict[str, Any]:
         """All strokes that are done, as a recipe for `run` and `run_points`, on this mesh (its name is "target") or any other."""
 
-    def export(self, *, lock: bool = False) -> tuple[Mesh, NDArray[np.uint32]]:
-        """The surface as a mesh, and the number (V,) in the session of each of its vertices.
+    def export(self, *, lock: bool = True) -> tuple[Mesh, NDArray[np.uint32]]:
+        """The surface as a mesh, as `positions` show it, and the number (V,) in the session of each of its vertices.
 
-        lock: with what the lock has added at the end of each stroke; else where the flow alone has taken it.
+        lock: with what the lock has added at the end of each stroke, which keeps the volume; without it vertices are where the flow
+        alone has taken them, to the bits that the log gives elsewhere.
         """
 
     @property

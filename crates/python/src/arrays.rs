@@ -55,7 +55,7 @@ pub(crate) fn numbers<'a, T: Element>(name: &str, array: &'a PyReadonlyArrayDyn<
 /// The same, which must all be finite.
 pub(crate) fn finite_numbers<'a>(name: &str, array: &'a PyReadonlyArrayDyn<'_, f64>) -> Result<&'a [f64], Failure> {
     let numbers = numbers(name, array)?;
-    match numbers.iter().position(|number| !number.is_finite()) {
+    match array.py().detach(|| numbers.iter().position(|number| !number.is_finite())) {
         Some(index) => Err(Failure::Argument(format!("{name}: the number at {index} is not finite"))),
         None => Ok(numbers),
     }
@@ -93,7 +93,7 @@ pub(crate) fn triangles(array: &Bound<'_, PyAny>) -> Result<Vec<[u32; 3]>, Failu
             _ => Err(Failure::Argument(format!("triangle {triangle} has the vertices {corners:?}: no such index"))),
         }
     };
-    corners.iter().enumerate().map(read).collect()
+    array.py().detach(|| corners.iter().enumerate().map(read).collect())
 }
 
 /// Refuses arrays of another shape; None stands for any length.

@@ -21,6 +21,7 @@ pub(crate) fn add_uvs(mesh: &mut TriMesh, uvs: &Bound<'_, PyAny>) -> Result<(), 
 
 /// Shading normals, (T, 3, 3), of any length.
 pub(crate) fn set_normals(mesh: &mut TriMesh, normals: &Bound<'_, PyAny>) -> Result<(), Failure> {
+    let py = normals.py();
     let normals = contiguous::<f64>(normals)?;
     check_shape("normals", normals.shape(), &[Some(mesh.triangles.len()), Some(3), Some(3)])?;
     let given: &[[DVec3; 3]] = cast_slice(numbers("normals", &normals)?);
@@ -28,7 +29,7 @@ pub(crate) fn set_normals(mesh: &mut TriMesh, normals: &Bound<'_, PyAny>) -> Res
         [Some(a), Some(b), Some(c)] => Ok([a, b, c].map(|normal| normal.as_vec3())),
         _ => Err(Failure::Argument(format!("normals: one of triangle {triangle} has no direction"))),
     };
-    mesh.corner.normals = given.iter().enumerate().map(unit).collect::<Result<Vec<[Vec3; 3]>, _>>()?;
+    mesh.corner.normals = py.detach(|| given.iter().enumerate().map(unit).collect::<Result<Vec<[Vec3; 3]>, _>>())?;
     Ok(())
 }
 
@@ -58,16 +59,18 @@ pub(crate) fn set_skin(
     joints: &Bound<'_, PyAny>,
     weights: &Bound<'_, PyAny>,
 ) -> Result<(), Failure> {
+    let py = joints.py();
     let joints = indices("joints", joints)?;
     let weights = contiguous::<f64>(weights)?;
     check_shape("joints", joints.shape(), &[Some(mesh.positions.len()), None])?;
     check_shape("weights", weights.shape(), &[Some(mesh.positions.len()), Some(joints.shape()[1])])?;
     let columns = joints.shape()[1];
-    let joints = numbers("joints", &joints)?.iter().map(|&joint| index("joints", joint));
-    let joints: Vec<u32> = joints.collect::<Result<_, _>>()?;
-    let weights = numbers("weights", &weights)?;
-    let set = mesh.vertex.set_skin_table(mesh.positions.len(), columns, &joints, weights);
-    set.map_err(|error| Failure::Argument(error.to_string()))
+    let (joints, weights) = (numbers("joints", &joints)?, numbers("weights", &weights)?);
+    py.detach(|| {
+        let joints: Vec<u32> = joints.iter().map(|&joint| index("joints", joint)).collect::<Result<_, _>>()?;
+        let set = mesh.vertex.set_skin_table(mesh.positions.len(), columns, &joints, weights);
+        set.map_err(|error| Failure::Argument(error.to_string()))
+    })
 }
 
 /// Names of materials, and by triangle, (T,), which of them it has.

@@ -1,8 +1,11 @@
 //! The sculpting session.
 
-use std::sync::{
-    Arc, Mutex, MutexGuard, PoisonError,
-    atomic::{AtomicUsize, Ordering},
+use std::{
+    ops::Range,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 use bytemuck::Pod;
@@ -20,6 +23,7 @@ use numpy::{Element, IntoPyArray};
 use pyo3::{
     exceptions::PyBufferError,
     prelude::*,
+    sync::MutexExt,
     types::{IntoPyDict, PyDict},
 };
 
@@ -180,14 +184,14 @@ impl Session {
 
     /// All strokes that are done and not undone, as the keys of a recipe.
     fn log<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let text = self.lock().log().to_json();
+        let text = self.ask(py, |session| session.log().to_json());
         py.import("json")?.call_method1("loads", (text,))
     }
 
     /// The surface as it stands, and for each of its vertices the number that it has in the session.
-    #[pyo3(signature = (*, lock = false))]
+    #[pyo3(signature = (*, lock = true))]
     fn export<'py>(&self, py: Python<'py>, lock: bool) -> PyResult<(Mesh, Bound<'py, PyAny>)> {
-        let exported = py.detach(|| self.lock().export(lock));
+        let exported = self.ask(py, |session| session.export(lock));
         let vertices = exported.vertices.into_pyarray(py).into_any();
         Ok((Mesh { mesh: exported.mesh.into() }, vertices))
     }
@@ -204,7 +208,7 @@ impl Session {
 
     #[getter]
     fn uvs<'py>(slf: &Bound<'py, Self>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let sets = slf.get().lock().buffers().uvs.len();
+        let sets = slf.get().ask(slf.py(), |session| session.buffers().uvs.len());
         (0..sets).map(|set| Self::rows(slf, |buffers| buffers.uvs[set].as_slice())).collect()
     }
 
@@ -220,7 +224,7 @@ impl Session {
 
     /// Ranges of the buffers that have changed since the last call.
     fn take_changes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let changes = self.lock().take_changes();
+        let changes = py.detach(|| self.lock().take_changes());
         let ranges = |ranges: Vec<DirtyRange>| -> Vec<(u32, u32)> {
             ranges.into_iter().map(|range| (range.start, range.end)).collect()
         };
@@ -239,12 +243,12 @@ impl Session {
         origin: [f64; 3],
         direction: [f64; 3],
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let hit = self.lock().pick(origin.into(), direction.into());
+        let hit = self.ask(py, |session| session.pick(origin.into(), direction.into()));
         hit.map(|hit| hit_to_dict(py, &hit)).transpose()
     }
 
     fn closest_point<'py>(&self, py: Python<'py>, point: [f64; 3]) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let hit = self.lock().closest_point(point.into());
+        let hit = self.ask(py, |session| session.closest_point(point.into()));
         hit.map(|hit| hit_to_dict(py, &hit)).transpose()
     }
 
@@ -257,8 +261,12 @@ impl Session {
         at: [f64; 3],
         rotate: [f64; 4],
     ) -> Result<Bound<'py, PyAny>, Failure> {
-        let mut vertices = Vec::new();
-        self.lock().vertices_in_reach(&tool.get().tool, &pose(at, rotate)?, &mut vertices);
+        let (tool, pose) = (&tool.get().tool, pose(at, rotate)?);
+        let vertices = self.ask(py, |session| {
+            let mut vertices = Vec::new();
+            session.vertices_in_reach(tool, &pose, &mut vertices);
+            vertices
+        });
         Ok(vertices.into_pyarray(py).into_any())
     }
 
@@ -278,32 +286,33 @@ impl Session {
         per_side: usize,
     ) -> Result<(Bound<'py, PyAny>, Bound<'py, PyAny>), Failure> {
         let (start, end) = (pose(start, start_rotate)?, pose(end, end_rotate)?);
-        let arrows = self.lock().preview(&tool.get().tool, &start, &end, per_side).map_err(Failure::input)?;
-        let points: Vec<DVec3> = arrows.iter().map(|arrow| arrow.point).collect();
-        let shifts: Vec<DVec3> = arrows.iter().map(|arrow| arrow.shift).collect();
+        let tool = &tool.get().tool;
+        let arrows = self.ask(py, |session| session.preview(tool, &start, &end, per_side)).map_err(Failure::input)?;
+        let (points, shifts): (Vec<DVec3>, Vec<DVec3>) =
+            arrows.into_iter().map(|arrow| (arrow.point, arrow.shift)).unzip();
         Ok((points_to_array(py, points)?.into_any(), points_to_array(py, shifts)?.into_any()))
     }
 
     /// Volume that the stroke under way has moved outward and inward.
     #[getter]
-    fn moved_volume(&self) -> (f64, f64) {
-        let moved = self.lock().moved_volume();
+    fn moved_volume(&self, py: Python<'_>) -> (f64, f64) {
+        let moved = self.ask(py, session::Session::moved_volume);
         (moved.outward, moved.inward)
     }
 
     #[getter]
-    fn is_stroke_under_way(&self) -> bool {
-        self.lock().is_stroke_under_way()
+    fn is_stroke_under_way(&self, py: Python<'_>) -> bool {
+        self.ask(py, session::Session::is_stroke_under_way)
     }
 
     #[getter]
-    fn volume(&self) -> Option<f64> {
-        self.lock().volume()
+    fn volume(&self, py: Python<'_>) -> Option<f64> {
+        self.ask(py, session::Session::volume)
     }
 
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let history = self.lock().history();
+        let history = self.ask(py, session::Session::history);
         [
             ("undoable", history.undoable),
             ("redoable", history.redoable),
@@ -315,31 +324,36 @@ impl Session {
 
     /// Numbers of the vertices that the render vertices belong to.
     fn vertices_of_render_vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        let session = self.lock();
-        let count = session.buffers().positions.len() as u32;
-        let vertices: Vec<u32> = (0..count).map(|render| session.vertex_of(render)).collect();
+        let vertices: Vec<u32> =
+            self.ask(py, |session| render_vertices(session).map(|render| session.vertex_of(render)).collect());
         vertices.into_pyarray(py).into_any()
     }
 
     /// By render vertex, the triangle of the mesh as opened that it takes its attributes from, and its barycentric coordinates there.
     fn origins<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let session = self.lock();
-        let origins = (0..session.buffers().positions.len() as u32).map(|render| session.origin_of(render));
         let nowhere = Origin { triangle: NONE, weights: DVec3::ZERO };
-        let (triangles, weights): (Vec<u32>, Vec<DVec3>) =
-            origins.map(|origin| origin.unwrap_or(nowhere)).map(|origin| (origin.triangle, origin.weights)).unzip();
+        let (triangles, weights): (Vec<u32>, Vec<DVec3>) = self.ask(py, |session| {
+            let origins = render_vertices(session).map(|render| session.origin_of(render).unwrap_or(nowhere));
+            origins.map(|origin| (origin.triangle, origin.weights)).unzip()
+        });
         Ok((triangles.into_pyarray(py).into_any(), points_to_array(py, weights)?.into_any()))
     }
 
-    fn __repr__(&self) -> String {
-        let session = self.lock();
-        format!("Session({} vertices, {} triangles)", session.vertex_count(), session.triangle_count())
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let (vertices, triangles) = self.ask(py, |session| (session.vertex_count(), session.triangle_count()));
+        format!("Session({vertices} vertices, {triangles} triangles)")
     }
 }
 
 impl Session {
+    /// To be called without the interpreter's lock, which whoever has the session may wait for.
     fn lock(&self) -> MutexGuard<'_, session::Session> {
         self.session.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Asks the session without the interpreter's lock.
+    fn ask<T: Send>(&self, py: Python<'_>, question: impl FnOnce(&session::Session) -> T + Send) -> T {
+        py.detach(|| question(&self.lock()))
     }
 
     /// Changes the session without the interpreter's lock, while no view of its buffers is held.
@@ -365,12 +379,16 @@ impl Session {
         buffer: impl for<'a> FnOnce(RenderBuffers<'a>) -> &'a [[T; N]],
     ) -> PyResult<Bound<'py, PyAny>> {
         let this = slf.get();
-        let session = this.lock();
+        let session = this.session.lock_py_attached(slf.py()).unwrap_or_else(PoisonError::into_inner);
         this.views.fetch_add(1, Ordering::AcqRel);
         let hold = Hold { _session: slf.clone().unbind(), views: Arc::clone(&this.views) };
         let rows = buffer(session.buffers());
         Ok(view(Bound::new(slf.py(), hold)?.into_any(), rows.as_flattened(), &[rows.len(), N]))
     }
+}
+
+fn render_vertices(session: &session::Session) -> Range<u32> {
+    0..session.buffers().positions.len() as u32
 }
 
 /// A pose from a place and an axis with an angle in degrees.

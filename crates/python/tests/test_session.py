@@ -59,8 +59,15 @@ def test_lock_gives_the_volume_back(ball, brush):
     session.move_to([9, 0, 1])
     assert session.end_stroke()["lock_skipped"] == "no_hold" and not session.is_stroke_under_way
     assert stroke(isochore.Session(ball, lock=False), brush)["lock_skipped"] == "off"
-    locked, _ = session.export(lock=True)
+    locked, _ = session.export()
     assert locked.volume == pytest.approx(ball.volume, rel=1e-13)
+    # It is what the host sees; the flow alone is elsewhere.
+    unlocked, vertices = session.export(lock=False)
+    rows = dict(zip(session.vertices_of_render_vertices(), session.positions))
+    shown = np.array([rows[vertex] for vertex in vertices])
+    del rows
+    assert np.array_equal(shown, locked.positions.astype(np.float32))
+    assert not np.array_equal(unlocked.positions, locked.positions)
 
 
 def test_undo_and_redo_are_exact(ball, brush):
