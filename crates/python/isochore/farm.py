@@ -17,7 +17,9 @@ import importlib.metadata
 import json
 import os
 import pathlib
-import tempfile
+import struct
+import uuid
+from urllib.parse import unquote
 
 from isochore._recipe import parse as _parse
 from isochore._recipe import run as _run
@@ -67,16 +69,33 @@ def _deform(recipe, target, place, *, settings):
 
 
 def _origin(recipe, settings):
-    """What a result is made of: the version, the settings, and the SHA-256 of the recipe and of all files that it names."""
+    """What a result is made of: the version, the settings, and the SHA-256 of the recipe and of all files that it needs."""
     loaded, folder = _parse(recipe, settings)
     names = {*loaded.mesh_names, *loaded.curve_names, *filter(None, [loaded.weights_name])}
+    named = [folder / name for name in sorted(names)]
     # What is missing, the run itself complains of.
-    named = [path for path in (folder / name for name in sorted(names)) if path.is_file()]
+    needed = [path for path in [recipe, *named, *(part for path in named for part in _parts(path))] if path.is_file()]
     return {
         "version": importlib.metadata.version("isochore"),
         "settings": settings,
-        "files": {str(path): _sha256(path) for path in [recipe, *named]},
+        "files": {str(path): _sha256(path) for path in needed},
     }
+
+
+def _parts(path):
+    """Buffers and images that a glTF file names; none where it cannot be read, which the run itself complains of."""
+    if path.suffix.lower() not in (".gltf", ".glb") or not path.is_file():
+        return []
+    data = path.read_bytes()
+    try:
+        if data.startswith(b"glTF"):
+            (length,) = struct.unpack_from("<I", data, 12)
+            data = data[20 : 20 + length]
+        document = json.loads(data)
+        uris = [part["uri"] for kind in ("buffers", "images") for part in document.get(kind, []) if "uri" in part]
+        return [path.parent / unquote(uri) for uri in uris if not uri.startswith("data:")]
+    except (ValueError, TypeError, AttributeError, struct.error):
+        return []
 
 
 def _sha256(path):
@@ -84,6 +103,10 @@ def _sha256(path):
 
 
 def _write_whole(path, text):
-    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=path.parent, prefix=".isochore-", delete=False) as draft:
-        draft.write(text)
-    os.replace(draft.name, path)
+    # Not a file of `tempfile`, which nobody else may read.
+    draft = path.with_name(f".isochore-{uuid.uuid4().hex}")
+    try:
+        draft.write_text(text, encoding="utf-8")
+        os.replace(draft, path)
+    finally:
+        draft.unlink(missing_ok=True)

@@ -1,7 +1,9 @@
 import json
 import os
 import signal
+import struct
 
+import numpy as np
 import pytest
 from distributed import Client, LocalCluster
 
@@ -86,6 +88,47 @@ def test_a_changed_tool_makes_a_new_result(client, job, tmp_path):
         alone = isochore.run(recipe, settings=[f"target.mesh={json.dumps(str(targets[0]))}"])
         assert places[-1] == alone.mesh.to_bytes("ply")
     assert places[0] != places[1]
+
+
+@pytest.mark.parametrize("format", ["gltf", "glb"])
+def test_what_a_document_names_belongs_to_the_result(client, job, tmp_path, format):
+    recipe, targets = job
+    document, binary = split(isochore.Mesh.read(targets[0]).to_bytes("glb"))
+    (tmp_path / "parts").mkdir()
+    document["buffers"][0]["uri"] = "parts/a%20buffer.bin"
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    if format == "glb":
+        text = struct.pack("<4sIII4s", b"glTF", 2, 20 + len(text), len(text), b"JSON") + text
+    target = tmp_path / f"ball.{format}"
+    target.write_bytes(text)
+    reports = []
+    for size in [1.0, 1.5]:
+        # The positions come first.
+        count = document["accessors"][0]["count"]
+        assert document["accessors"][0]["type"] == "VEC3" and document["bufferViews"][0].get("byteOffset", 0) == 0
+        scaled = (np.frombuffer(binary, "<f4", 3 * count) * np.float32(size)).tobytes()
+        (tmp_path / "parts" / "a buffer.bin").write_bytes(scaled + binary[12 * count :])
+        for _ in range(2):
+            [(_, report)] = farm.run(recipe, [target], tmp_path / "results", client=client)
+            assert isinstance(report, dict), report
+            reports.append(report)
+    assert reports[0] == reports[1] and reports[2] == reports[3]
+    assert reports[2]["before"]["volume"] == pytest.approx(1.5**3 * reports[0]["before"]["volume"], rel=1e-6)
+
+
+def split(glb):
+    """The document of a GLB file, and its binary part."""
+    length = struct.unpack_from("<I", glb, 12)[0]
+    return json.loads(glb[20 : 20 + length]), glb[28 + length :]
+
+
+def test_results_are_for_whom_new_files_are(client, job, tmp_path):
+    recipe, targets = job
+    fresh = tmp_path / "fresh"
+    fresh.touch()
+    list(farm.run(recipe, targets[:1], tmp_path / "results", client=client))
+    assert [path.stat().st_mode for path in (tmp_path / "results").iterdir()] == 2 * [fresh.stat().st_mode]
 
 
 def test_a_report_tells_of_the_mesh_beside_it(client, job, tmp_path):
