@@ -15,7 +15,8 @@ use isochore_sculpt::{
 pub use query::{
     Arrow, History, Hit, Origin, isochore_session_closest_point, isochore_session_history,
     isochore_session_moved_volume, isochore_session_origin, isochore_session_pick, isochore_session_preview,
-    isochore_session_vertices, isochore_session_vertices_in_reach, isochore_session_volume,
+    isochore_session_vertex_map, isochore_session_vertices, isochore_session_vertices_in_reach,
+    isochore_session_volume,
 };
 pub use receipt::{LockSkipped, MoveReceipt, StrokeReceipt};
 
@@ -34,6 +35,8 @@ pub struct Session {
     changed: [Vec<Range>; 4],
     /// The vertices that were last asked for.
     vertices: Vec<u32>,
+    /// The vertices in the place of those of the mesh as opened, when they were last asked for.
+    vertex_map: Vec<u32>,
     /// The vertices in reach that were last asked for.
     reached: Vec<u32>,
     /// The preview that was last asked for.
@@ -158,6 +161,7 @@ pub unsafe extern "C" fn isochore_session_new(
             session: opened,
             changed: Default::default(),
             vertices: Vec::new(),
+            vertex_map: Vec::new(),
             reached: Vec::new(),
             arrows: Vec::new(),
         };

@@ -266,6 +266,11 @@ static void queries(void) {
     CHECK(isochore_session_export(session, false, &mesh) == ISOCHORE_STATUS_OK);
     CHECK(count == isochore_mesh_vertex_count(mesh) && count == 4 + receipt.inserted_vertices - receipt.removed_vertices);
     for (size_t i = 1; i < count; i++) CHECK(vertices[i - 1] < vertices[i]);
+    const uint32_t *map = NULL;
+    size_t opened = 0, there = 0;
+    CHECK(isochore_session_vertex_map(session, &map, &opened) == ISOCHORE_STATUS_OK && opened == 4);
+    for (size_t i = 0; i < count; i++) there += vertices[i] == map[0];
+    CHECK(there == 1);
     isochore_mesh_free(mesh);
     strokes[0].longest_edge = -1;
     CHECK(isochore_session_begin_stroke(session, NULL, &strokes[0]) == ISOCHORE_STATUS_ARGUMENT);

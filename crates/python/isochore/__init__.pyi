@@ -390,6 +390,9 @@ class Session:
         A vertex without triangles has the triangle 2**32 - 1 and coordinates of zero.
         """
 
+    def vertex_map(self) -> NDArray[np.uint32]:
+        """For each vertex of the mesh as opened, (V,), the vertex that stands in its place: itself, or what collapses merged it into."""
+
     def vertices_of_render_vertices(self) -> NDArray[np.uint32]:
         """Number (R,) of the vertex of each render vertex; 2**32 - 1 where it was removed."""
 

@@ -322,6 +322,11 @@ impl Session {
         .into_py_dict(py)
     }
 
+    /// By vertex of the mesh as opened, the vertex that stands in its place.
+    fn vertex_map<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        self.lock().vertex_map().into_pyarray(py).into_any()
+    }
+
     /// Numbers of the vertices that the render vertices belong to.
     fn vertices_of_render_vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         let vertices: Vec<u32> =

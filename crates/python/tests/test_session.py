@@ -36,6 +36,19 @@ def test_log_gives_the_same_bits(ball, brush):
     assert np.array_equal(points, exported.positions)
 
 
+def test_removed_vertices_are_mapped_to_what_is_in_their_place(ball, brush):
+    session = isochore.Session(ball)
+    before = np.arange(len(ball.positions))
+    assert np.array_equal(session.vertex_map(), before)
+    assert stroke(session, brush, longest_edge=0.5)["removed_vertices"] > 0
+    exported, there = session.export()
+    now = session.vertex_map()
+    removed = np.setdiff1d(before, there)
+    assert len(removed) > 0 and np.array_equal(np.flatnonzero(now != before), removed)
+    assert np.isin(now, there).all()
+    assert session.undo() and np.array_equal(session.vertex_map(), before)
+
+
 def test_volume_is_accounted_for(ball, brush):
     session = isochore.Session(ball, lock=False)
     receipt = stroke(session, brush)

@@ -8,6 +8,7 @@
 //! - A *vertex* is a point of the surface. Vertices of the mesh as opened keep their numbers and go exactly where the flow takes
 //!   them; inserted ones follow. A number changes its meaning in one case: where a collapse removed an inserted vertex, a later
 //!   stroke may give its number to another. So it is with triangles, and buffers are as long as strokes need, not their history.
+//!   What became of those that collapses removed of the mesh as opened, [`vertex_map`](Session::vertex_map) tells.
 //! - A *render vertex* is a vertex as the triangles on one side of a seam see it: what [buffers](Session::buffers) hold.
 //! - The *origin* of a render vertex is the point of the mesh as opened that it takes its attributes from.
 //! - The *log* is a [recipe](crate::Recipe) of all strokes, which can be [replayed](crate::replay) on any mesh or point set.

@@ -185,6 +185,13 @@ impl Session {
     pub fn exported_vertices(&self) -> Vec<u32> {
         self.session.vertices().collect()
     }
+
+    /// For each vertex of the mesh as opened the vertex that stands in its place: itself, or the one that collapses have merged it
+    /// into.
+    #[wasm_bindgen(js_name = vertexMap)]
+    pub fn vertex_map(&self) -> Vec<u32> {
+        self.session.vertex_map()
+    }
 }
 
 #[wasm_bindgen]

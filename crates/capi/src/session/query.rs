@@ -84,6 +84,26 @@ pub unsafe extern "C" fn isochore_session_vertices(
     })
 }
 
+/// For each vertex of the mesh as opened, `count` of them, the vertex that stands in its place: itself, or the one that collapses have
+/// merged it into. They are in the session's own memory, until it is asked again.
+///
+/// # Safety
+/// `session` is a handle; `vertices` and `count` can be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn isochore_session_vertex_map(
+    session: *mut Session,
+    vertices: *mut *const u32,
+    count: *mut usize,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let session = unsafe { reference_mut("session", session) }?;
+        session.vertex_map = session.session.vertex_map();
+        // SAFETY: as the caller promises.
+        unsafe { put_slice("vertices", vertices, count, &session.vertex_map) }
+    })
+}
+
 /// The first point of the surface on a ray; `is_hit` tells whether there is one.
 ///
 /// # Safety

@@ -143,8 +143,10 @@ impl Surface {
             (self.topology.twin(previous_half_edge(half_edge)), bit(patch, side + 1)),
             (self.topology.twin(next_half_edge(twin)), bit(far_patch, far_side + 2)),
         ];
-        let fan: Vec<u32> = self.topology.fan(self.topology.start(half_edge)).collect();
+        let [start, end] = [self.topology.start(half_edge), self.topology.end(half_edge)];
+        let fan: Vec<u32> = self.topology.fan(start).collect();
         self.topology.collapse(half_edge);
+        self.merges.push([start, end]);
         // Inside one piece of the surface, all triangles see the same one.
         self.remove_render_vertex(removed);
         for leaving in fan {

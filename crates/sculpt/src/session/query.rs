@@ -157,6 +157,21 @@ impl Session {
         (0..self.vertex_count() as u32).filter(|&vertex| self.is_alive(vertex))
     }
 
+    /// By vertex of the mesh as opened the vertex that stands in its place: itself, or the one that collapses have merged it into,
+    /// which may be an inserted one. All of these are there. Takes time in proportion to these vertices and to the collapses of the
+    /// strokes that are not undone.
+    ///
+    /// The way back, from inserted vertices to the mesh as opened, is told by [`origin_of`](Self::origin_of).
+    pub fn vertex_map(&self) -> Vec<u32> {
+        // From the last collapse to the first: where a number was given away later, what it meant before is overwritten.
+        let mut now: Vec<u32> = (0..self.vertex_count() as u32).collect();
+        for &[removed, kept] in self.surface.merges.items().iter().rev() {
+            now[removed as usize] = now[kept as usize];
+        }
+        now.truncate(self.surface.opened.positions.len());
+        now
+    }
+
     /// Whether a vertex was not removed.
     ///
     /// # Panics

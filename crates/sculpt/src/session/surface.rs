@@ -52,6 +52,8 @@ pub(super) struct Surface {
     /// Nothing in it is ever changed, but removed, and its place taken.
     pub(super) render: Journaled<RenderVertex>,
     free_render: FreeSlots,
+    /// All collapses so far, in order: the vertex that was removed, and the one in its place.
+    pub(super) merges: Journaled<[u32; 2]>,
     /// Render vertices whose texture coordinates and colors are to be written.
     renewed: Vec<u32>,
     pub(super) render_positions: Journaled<[f32; 3]>,
@@ -89,6 +91,7 @@ pub(super) struct SurfaceDelta {
     corners: Delta<[u32; 3]>,
     patches: Delta<Patch>,
     render: Delta<RenderVertex>,
+    merges: Delta<[u32; 2]>,
     render_positions: Delta<[f32; 3]>,
     normals: Delta<[f32; 3]>,
 }
@@ -122,6 +125,7 @@ impl Surface {
             patches: Journaled::new(patches),
             render: Journaled::new(render),
             free_render: FreeSlots::new(count as u32),
+            merges: Journaled::default(),
             renewed: (0..count as u32).collect(),
             inserted: InsertedVertices::new(opened.positions.len()),
             normals: Journaled::new(vec![[0.0; 3]; count]),
@@ -207,6 +211,7 @@ impl Surface {
         self.corners.begin();
         self.patches.begin();
         self.render.begin();
+        self.merges.begin();
         self.render_positions.begin();
         self.normals.begin();
         self.topology.begin()
@@ -221,6 +226,7 @@ impl Surface {
             corners: self.corners.finish(),
             patches: self.patches.finish(),
             render: self.render.finish(),
+            merges: self.merges.finish(),
             render_positions: self.render_positions.finish(),
             normals: self.normals.finish(),
         };
@@ -244,6 +250,7 @@ impl Surface {
                 self.corners.swap(&mut delta.corners);
                 self.patches.swap(&mut delta.patches);
                 self.render.swap(&mut delta.render);
+                self.merges.swap(&mut delta.merges);
                 self.render_positions.swap(&mut delta.render_positions);
                 self.normals.swap(&mut delta.normals);
             },
@@ -426,6 +433,7 @@ impl SurfaceDelta {
             + self.corners.bytes()
             + self.patches.bytes()
             + self.render.bytes()
+            + self.merges.bytes()
             + self.render_positions.bytes()
             + self.normals.bytes()
     }
@@ -438,6 +446,7 @@ impl SurfaceDelta {
         self.corners.shrink();
         self.patches.shrink();
         self.render.shrink();
+        self.merges.shrink();
         self.render_positions.shrink();
         self.normals.shrink();
     }

@@ -77,6 +77,8 @@ fn make(session: &mut Session, tool: &Arc<SessionTool>, options: &StrokeOptions,
 struct Snapshot {
     positions: Vec<[u64; 3]>,
     offsets: Vec<[u64; 3]>,
+    /// By vertex of the mesh as opened the one in its place.
+    vertex_map: Vec<u32>,
     /// By render vertex its vertex and where it comes from.
     render: Vec<(u32, Option<Origin>)>,
     triangles: Vec<Option<[u32; 3]>>,
@@ -96,6 +98,7 @@ fn snapshot(session: &Session) -> Snapshot {
     Snapshot {
         positions: wide(session.positions()),
         offsets: wide(session.offsets()),
+        vertex_map: session.vertex_map(),
         render: (0..buffers.positions.len() as u32).map(origins).collect(),
         triangles: (0..buffers.indices.len() as u32).map(|triangle| session.triangle(triangle)).collect(),
         render_positions: bits(buffers.positions),

@@ -90,3 +90,40 @@ fn places_are_taken_alike_whatever_was_undone() {
     assert!(straight.vertex_count() > straight.vertices().count());
     assert_eq!(snapshot(&straight), snapshot(&hesitant));
 }
+
+#[test]
+fn removed_vertices_are_mapped_to_what_is_in_their_place() {
+    let (mut session, mut unrefined) = (ball(), ball());
+    let opened: Vec<u32> = (0..session.vertex_count() as u32).collect();
+    assert_eq!(session.vertex_map(), opened);
+    let (mut maps, mut onto_inserted) = (vec![opened.clone()], 0);
+    for round in 0..24 {
+        let (is_back, direction) = (round % 2 == 1, [DVec3::X, DVec3::Y, DVec3::NEG_Z][round / 2 % 3]);
+        let options = if is_back { coarsening() } else { refining() };
+        make(&mut session, &brush(), &options, &pull(direction, is_back));
+        make(&mut unrefined, &brush(), &UNREFINED, &pull(direction, is_back));
+        let map = session.vertex_map();
+        for (&vertex, &kept) in opened.iter().zip(&map) {
+            assert!(session.is_alive(kept));
+            assert_eq!(session.is_alive(vertex), kept == vertex);
+        }
+        // The flow takes the vertices of the mesh as opened to the same places whatever is edited around them.
+        let distance = |vertex: u32| {
+            unrefined.positions()[vertex as usize].distance(session.positions()[map[vertex as usize] as usize])
+        };
+        let farthest = opened.iter().map(|&vertex| distance(vertex)).fold(0.0, f64::max);
+        // No collapse spans more than 0.3, and the brush that goes back leaves nothing stretched.
+        assert!(!is_back || farthest < 0.3, "{farthest}");
+        onto_inserted += map.iter().filter(|&&kept| kept as usize >= opened.len()).count();
+        maps.push(map);
+    }
+    assert!(onto_inserted > 100 && session.vertex_map() != opened, "{onto_inserted}");
+    for expected in maps.iter().rev().skip(1) {
+        assert!(session.undo().unwrap());
+        assert_eq!(session.vertex_map(), *expected);
+    }
+    for expected in &maps[1..] {
+        assert!(session.redo().unwrap());
+        assert_eq!(session.vertex_map(), *expected);
+    }
+}
