@@ -200,11 +200,6 @@ impl Bvh {
         &self.triangles
     }
 
-    /// Vertices in the unit frame.
-    pub(crate) fn positions(&self) -> &[DVec3] {
-        &self.positions
-    }
-
     /// Corners of a triangle in the unit frame, by its place in leaf order.
     #[inline(always)]
     pub(crate) fn corners(&self, slot: u32) -> [DVec3; 3] {

@@ -66,7 +66,9 @@ impl TriMesh {
             let triangles = &self.triangles[first..self.triangles.len().min(first + SUMMED_PLAINLY)];
             let (mut six_volumes, mut moments) = (0.0, DVec3::ZERO);
             for triangle in triangles {
-                let [a, b, c] = triangle.map(|vertex| frame.local(self.positions[vertex as usize]));
+                let [a, b, c] = *triangle;
+                let local = |vertex: u32| frame.local(self.positions[vertex as usize]);
+                let (a, b, c) = (local(a), local(b), local(c));
                 let six_volume = a.dot(b.cross(c));
                 six_volumes += six_volume;
                 moments += (a + b + c) * six_volume;

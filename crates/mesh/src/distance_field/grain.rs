@@ -152,7 +152,9 @@ pub(super) fn prepare(bvh: &Bvh, node: usize, slot: u32, place: &mut Place<'_>) 
         }
     }
     let along_leaf = Extents::of(&corners, &axes);
-    let of_grain = [0, 1, 2].map(|axis| shell.axes.col(axis).to_array().map(|x| [x; LANES]));
+    // Spelled out, since calls that take a closure stay calls in code for other registers than the rest.
+    let all = |vector: DVec3| [[vector.x; LANES], [vector.y; LANES], [vector.z; LANES]];
+    let of_grain = [all(shell.axes.x_axis), all(shell.axes.y_axis), all(shell.axes.z_axis)];
     let lanes = Lanes { axes, along_leaf, along_grain: Extents::of(&corners, &of_grain) };
     let mut grain = Grain { count: count as u32, center, normal, shell, longest2: longest2[longest] };
     if nodes[node].is_leaf() {

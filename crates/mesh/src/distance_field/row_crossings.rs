@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use super::Grid;
-use crate::bvh::UnitFrame;
+use crate::bvh::{Node, UnitFrame};
 
 /// Crossings of triangles with the rows of a grid, the lines through its nodes along x.
 ///
@@ -39,9 +39,21 @@ impl RowCrossings {
         Self { nodes, nodes_per_length: 1.0 / (grid.cell * frame.scale()), changes }
     }
 
+    /// Whether a triangle in the box of this node can meet a row.
+    pub(super) fn may_meet(&self, node: &Node) -> bool {
+        let is_between = |axis: usize| {
+            let [min, max] = [node.min[axis], node.max[axis]].map(f64::from);
+            self.range_between(axis, min, max).is_empty()
+        };
+        !is_between(2) && !is_between(1)
+    }
+
     /// Counts the crossings of one triangle. `vertices` tell which corners are shared with other triangles.
     pub(super) fn add(&self, corners: &[DVec3; 3], vertices: &[u32; 3]) {
-        let range = |axis: usize| self.range_between(axis, corners.map(|corner| corner[axis]));
+        let range = |axis: usize| {
+            let [a, b, c] = corners.map(|corner| corner[axis]);
+            self.range_between(axis, a.min(b).min(c), a.max(b).max(c))
+        };
         // Most triangles of a fine mesh meet no row.
         let z = range(2);
         let y = if z.is_empty() { 0..0 } else { range(1) };
@@ -103,10 +115,9 @@ impl RowCrossings {
         numbers
     }
 
-    /// Numbers of the nodes along an axis between the least and the greatest of these coordinates, or on them; where there are none,
-    /// an empty range at the first node behind.
-    fn range_between(&self, axis: usize, [a, b, c]: [f64; 3]) -> Range<usize> {
-        let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+    /// Numbers of the nodes along an axis between these coordinates, or on them; where there are none, an empty range at the first
+    /// node behind.
+    fn range_between(&self, axis: usize, min: f64, max: f64) -> Range<usize> {
         let nodes = &self.nodes[axis];
         // Nodes are evenly spaced but for rounding.
         let near = |coordinate: f64| (((coordinate - nodes[0]) * self.nodes_per_length) as usize).min(nodes.len());

@@ -13,8 +13,8 @@ use super::row_crossings::RowCrossings;
 use super::{DistanceFieldError, Grid};
 use crate::{Bvh, Cancelled, Monitor, TriMesh, WindingNumber};
 
-/// Triangles between two looks at the monitor.
-const TRIANGLES_AT_ONCE: usize = 1 << 14;
+/// Nodes of the hierarchy between two looks at the monitor.
+const NODES_AT_ONCE: usize = 1 << 13;
 
 /// Nodes along each side of a brick, for which one look at the patches from afar may do.
 const BRICK: usize = 4;
@@ -36,11 +36,12 @@ pub(super) fn negate_inside(
     monitor: &dyn Monitor,
 ) -> Result<(), DistanceFieldError> {
     let rows = RowCrossings::new(grid, bvh.frame());
-    mesh.triangles.par_chunks(TRIANGLES_AT_ONCE).try_for_each(|triangles| {
-        for triangle in triangles {
-            let [a, b, c] = *triangle;
-            let positions = bvh.positions();
-            rows.add(&[positions[a as usize], positions[b as usize], positions[c as usize]], triangle);
+    bvh.nodes().par_chunks(NODES_AT_ONCE).try_for_each(|nodes| {
+        // Most triangles of a fine mesh lie between rows, and so do most leaves.
+        for leaf in nodes.iter().filter(|node| node.is_leaf() && rows.may_meet(node)) {
+            for slot in leaf.first..leaf.first + leaf.count {
+                rows.add(&bvh.corners(slot), &bvh.triangles()[slot as usize]);
+            }
         }
         if monitor.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     })?;
