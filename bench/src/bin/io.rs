@@ -62,7 +62,7 @@ fn main() {
         let normals = large.vertex_normals();
         large.corner.normals = by_corner(&large, |vertex| normals[vertex].as_vec3());
         compare_formats(&large, ", with normals", &[(Format::Glb, "glb")], &[]);
-        large.corner.uvs = vec![by_corner(&large, |vertex| normals[vertex].truncate())];
+        large.corner.uvs = vec![by_corner(&large, |vertex| normals[vertex].truncate().as_vec2())];
         compare_formats(&large, ", with texture coordinates and normals", &[(Format::Obj, "obj")], &[]);
     });
 }

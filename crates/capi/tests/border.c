@@ -376,24 +376,24 @@ static void skins(void) {
 static void attributes(const char *path) {
     const uint32_t of_triangles[] = {0, 1, 0, 1}, wrong[] = {0, 1, 0, 2};
     const char *const names[] = {"clay", "glaze"};
-    double uvs[24], colors[16];
-    float normals[36];
-    for (int i = 0; i < 24; i++) uvs[i] = i / 24.0;
+    double colors[16];
+    float uvs[24], normals[36];
+    for (int i = 0; i < 24; i++) uvs[i] = i / 24.0f;
     for (int i = 0; i < 16; i++) colors[i] = i / 16.0;
     for (int i = 0; i < 36; i++) normals[i] = i % 3 == 2;
     IsochoreMesh *mesh = tetrahedron(), *refined = NULL;
     const double *found = NULL;
-    const float *directions = NULL;
+    const float *coordinates = NULL, *directions = NULL;
     const uint32_t *materials = NULL;
     char *name = NULL;
     size_t count = 1;
 
-    CHECK(isochore_mesh_uvs(mesh, 0, &found, &count) == ISOCHORE_STATUS_OK && count == 0);
+    CHECK(isochore_mesh_uvs(mesh, 0, &coordinates, &count) == ISOCHORE_STATUS_OK && count == 0);
     CHECK(isochore_mesh_set_uvs(mesh, 1, uvs) == ISOCHORE_STATUS_ARGUMENT);
     uvs[7] = NAN;
     CHECK(isochore_mesh_set_uvs(mesh, 0, uvs) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(strstr(isochore_last_error(), "element 1"));
-    uvs[7] = 0.5;
+    uvs[7] = 0.5f;
     CHECK(isochore_mesh_set_uvs(mesh, 0, uvs) == ISOCHORE_STATUS_OK);
     CHECK(isochore_mesh_set_uvs(mesh, 1, uvs) == ISOCHORE_STATUS_OK);
     CHECK(isochore_mesh_set_normals(mesh, NULL) == ISOCHORE_STATUS_ARGUMENT);
@@ -403,8 +403,8 @@ static void attributes(const char *path) {
     CHECK(strstr(isochore_last_error(), "triangle 3"));
     CHECK(isochore_mesh_set_materials(mesh, of_triangles, names, 2) == ISOCHORE_STATUS_OK);
 
-    CHECK(isochore_mesh_uvs(mesh, 1, &found, &count) == ISOCHORE_STATUS_OK);
-    CHECK(count == 24 && memcmp(found, uvs, sizeof uvs) == 0);
+    CHECK(isochore_mesh_uvs(mesh, 1, &coordinates, &count) == ISOCHORE_STATUS_OK);
+    CHECK(count == 24 && memcmp(coordinates, uvs, sizeof uvs) == 0);
     CHECK(isochore_mesh_normals(mesh, &directions, &count) == ISOCHORE_STATUS_OK);
     CHECK(count == 36 && memcmp(directions, normals, sizeof normals) == 0);
     CHECK(isochore_mesh_vertex_colors(mesh, &found, &count) == ISOCHORE_STATUS_OK);
@@ -417,8 +417,8 @@ static void attributes(const char *path) {
     CHECK(isochore_mesh_read(path, &refined) == ISOCHORE_STATUS_OK);
     size_t triangles = isochore_mesh_triangle_count(refined);
     CHECK(triangles > 4);
-    CHECK(isochore_mesh_uvs(refined, 0, &found, &count) == ISOCHORE_STATUS_OK && count == 6 * triangles);
-    for (size_t i = 0; i < count; i++) CHECK(found[i] >= 0 && found[i] <= 1);
+    CHECK(isochore_mesh_uvs(refined, 0, &coordinates, &count) == ISOCHORE_STATUS_OK && count == 6 * triangles);
+    for (size_t i = 0; i < count; i++) CHECK(coordinates[i] >= 0 && coordinates[i] <= 1);
     CHECK(isochore_mesh_triangle_materials(refined, &materials, &count) == ISOCHORE_STATUS_OK && count == triangles);
     for (size_t i = 0; i < count; i++) CHECK(materials[i] < 2);
     CHECK(isochore_mesh_material_name(refined, materials[0], &name) == ISOCHORE_STATUS_OK);

@@ -1,6 +1,6 @@
 //! A table of meshes, each with what is known of it, and every operation on all of them.
 
-use glam::{DQuat, DVec2, DVec3, DVec4, Vec3};
+use glam::{DQuat, DVec3, DVec4, Vec2, Vec3};
 use isochore_mesh::io::{self, Format};
 use isochore_mesh::{ClosedMesh, MeshError, SubTriangle, Subdivision, Topology, TriMesh, primitives};
 
@@ -55,7 +55,7 @@ fn twice(mesh: &TriMesh, offset: DVec3) -> TriMesh {
 fn seamed() -> TriMesh {
     let mut mesh = primitives::box_mesh(DVec3::ONE, [2, 2, 2]);
     let corners = mesh.triangles.len();
-    mesh.corner.uvs = vec![(0..corners).map(|t| [0.0, 0.25, 0.5].map(|u| DVec2::new(u, t as f64))).collect()];
+    mesh.corner.uvs = vec![(0..corners).map(|t| [0.0, 0.25, 0.5].map(|u| Vec2::new(u, t as f32))).collect()];
     mesh.corner.normals = (0..corners)
         .map(|t| {
             let [a, b, c] = mesh.corners(t);
@@ -352,7 +352,8 @@ fn subdivision_opens_no_seam() {
     let mut mesh = primitives::icosphere(1.0, 1);
     let normals = mesh.vertex_normals();
     mesh.corner.normals = mesh.triangles.iter().map(|t| t.map(|v| normals[v as usize].as_vec3())).collect();
-    mesh.corner.uvs = vec![mesh.triangles.iter().map(|t| t.map(|v| normals[v as usize].truncate())).collect()];
+    mesh.corner.uvs =
+        vec![mesh.triangles.iter().map(|t| t.map(|v| normals[v as usize].truncate().as_vec2())).collect()];
     let finer = mesh.subdivided(&in_four(&mesh));
     let mut at_vertex = vec![None; finer.positions.len()];
     for (triangle, vertices) in finer.triangles.iter().enumerate() {

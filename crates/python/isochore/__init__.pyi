@@ -61,8 +61,8 @@ class Mesh:
         """Copies the arrays.
 
         positions: (V, 3) numbers, model units. triangles: (T, 3) integers, counter-clockwise seen from outside.
-        uvs: sets of texture coordinates, (T, 3, 2) each, by corner, so that seams do not open the surface.
-        normals: for shading, by corner, (T, 3, 3), of any length; they turn with the surface and are kept in single precision.
+        uvs: sets of texture coordinates, (T, 3, 2) each, by corner, so that seams do not open the surface, kept in single precision.
+        normals: for shading, by corner, (T, 3, 3), of any length; they turn with the surface and are kept in single precision too.
         colors: by vertex, (V, 4), linear RGBA, 0 to 1. corner_colors: by corner, (T, 3, 4), where they differ across seams.
         skin: joints (V, K), integers, and their weights (V, K), which are divided by the sum of each row; weight 0 is for places not used.
         materials: names; an empty one stands for triangles without a material. triangle_materials: (T,) indices into them; each needs
@@ -122,8 +122,8 @@ class Mesh:
         """(T, 3) vertex indices, counter-clockwise seen from outside; a view."""
 
     @property
-    def uvs(self) -> list[NDArray[np.float64]]:
-        """Sets of texture coordinates by corner, (T, 3, 2) each; views."""
+    def uvs(self) -> list[NDArray[np.float32]]:
+        """Sets of texture coordinates by corner, (T, 3, 2) each, in single precision; views."""
 
     @property
     def normals(self) -> NDArray[np.float32] | None:

@@ -53,9 +53,12 @@ pub(crate) fn numbers<'a, T: Element>(name: &str, array: &'a PyReadonlyArrayDyn<
 }
 
 /// The same, which must all be finite.
-pub(crate) fn finite_numbers<'a>(name: &str, array: &'a PyReadonlyArrayDyn<'_, f64>) -> Result<&'a [f64], Failure> {
+pub(crate) fn finite_numbers<'a, T: Element + Copy + Into<f64>>(
+    name: &str,
+    array: &'a PyReadonlyArrayDyn<'_, T>,
+) -> Result<&'a [T], Failure> {
     let numbers = numbers(name, array)?;
-    match array.py().detach(|| numbers.iter().position(|number| !number.is_finite())) {
+    match array.py().detach(|| numbers.iter().position(|&number| !number.into().is_finite())) {
         Some(index) => Err(Failure::Argument(format!("{name}: the number at {index} is not finite"))),
         None => Ok(numbers),
     }

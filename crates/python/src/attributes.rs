@@ -1,7 +1,7 @@
 //! What a mesh carries besides its geometry, from NumPy arrays.
 
 use bytemuck::cast_slice;
-use glam::{DVec2, DVec3, DVec4, Vec3};
+use glam::{DVec3, DVec4, Vec2, Vec3};
 use isochore_mesh::TriMesh;
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -13,9 +13,9 @@ use crate::{
 
 /// One more set of texture coordinates, (T, 3, 2).
 pub(crate) fn add_uvs(mesh: &mut TriMesh, uvs: &Bound<'_, PyAny>) -> Result<(), Failure> {
-    let uvs = contiguous::<f64>(uvs)?;
+    let uvs = contiguous::<f32>(uvs)?;
     check_shape("uvs", uvs.shape(), &[Some(mesh.triangles.len()), Some(3), Some(2)])?;
-    mesh.corner.uvs.push(cast_slice::<f64, [DVec2; 3]>(finite_numbers("uvs", &uvs)?).to_vec());
+    mesh.corner.uvs.push(cast_slice::<f32, [Vec2; 3]>(finite_numbers("uvs", &uvs)?).to_vec());
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use std::{path::PathBuf, sync::Arc};
 
 use bytemuck::{allocation::cast_vec, cast_slice};
-use glam::DVec2;
+use glam::Vec2;
 use isochore_mesh::{
     ClosedMesh, SelfIntersections, SkinTable, TriMesh,
     io::{self, Format, SplitVertices},
@@ -139,8 +139,8 @@ impl Mesh {
 
     #[getter]
     fn uvs<'py>(slf: &Bound<'py, Self>) -> Vec<Bound<'py, PyAny>> {
-        let set = |uvs: &Vec<[DVec2; 3]>| {
-            view::<f64>(slf.clone().into_any(), cast_slice(uvs.as_flattened()), &[uvs.len(), 3, 2])
+        let set = |uvs: &Vec<[Vec2; 3]>| {
+            view::<f32>(slf.clone().into_any(), cast_slice(uvs.as_flattened()), &[uvs.len(), 3, 2])
         };
         slf.get().mesh.corner.uvs.iter().map(set).collect()
     }

@@ -81,11 +81,12 @@ def test_what_is_no_mesh_is_refused():
 
 
 def test_attributes_come_back():
-    uvs = np.arange(6.0).reshape(1, 3, 2)
+    uvs = np.arange(6.0).reshape(1, 3, 2) / 10
     colors = np.linspace(0, 1, 12).reshape(3, 4)
     normals = np.array([[[2, 0, 0], [0, 3, 0], [3, 0, 4]]])
     mesh = isochore.Mesh(np.eye(3), [[0, 1, 2]], uvs=[uvs], normals=normals, colors=colors)
-    assert np.array_equal(mesh.uvs, [uvs]) and np.array_equal(mesh.colors, colors)
+    assert mesh.uvs[0].dtype == np.float32 and np.array_equal(mesh.uvs, [uvs.astype(np.float32)])
+    assert np.array_equal(mesh.colors, colors)
     # Half an ulp of single precision.
     assert mesh.normals.dtype == np.float32
     assert mesh.normals == pytest.approx(np.array([[[1, 0, 0], [0, 1, 0], [0.6, 0, 0.8]]]), abs=3e-8)
@@ -95,6 +96,8 @@ def test_attributes_come_back():
         isochore.Mesh(np.eye(3), [[0, 1, 2]], normals=np.zeros((1, 3, 3)))
     with pytest.raises(ValueError, match="normals must have the shape"):
         isochore.Mesh(np.eye(3), [[0, 1, 2]], normals=np.ones((3, 3)))
+    with pytest.raises(ValueError, match="uvs"):
+        isochore.Mesh(np.eye(3), [[0, 1, 2]], uvs=[np.full((1, 3, 2), np.nan)])
     with pytest.raises(ValueError, match="colors"):
         isochore.Mesh(np.eye(3), [[0, 1, 2]], colors=np.full((3, 4), np.inf))
 

@@ -105,7 +105,7 @@ def test_colors_of_vertices(textured):
 
 def test_colors_that_differ_across_a_seam(textured):
     # The texture as a color, which jumps from 1 to 0 at the seams.
-    colors = np.dstack([np.rint(textured.uvs[0] * 255) / 255, np.ones((*textured.triangles.shape, 2))])
+    colors = np.dstack([np.rint(textured.uvs[0].astype(float) * 255) / 255, np.ones((*textured.triangles.shape, 2))])
     mesh = isochore.Mesh(textured.positions, textured.triangles, corner_colors=colors)
     there = mesh.to_trimesh()
     assert there.visual.kind == "vertex" and len(there.vertices) == (SEGMENTS + 1) * (RINGS + 1)

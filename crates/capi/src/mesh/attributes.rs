@@ -16,12 +16,12 @@ use crate::{
 /// # Safety
 /// `mesh` is a handle; `uvs` has 6 values for each triangle.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn isochore_mesh_set_uvs(mesh: *mut Mesh, set: usize, uvs: *const f64) -> Status {
+pub unsafe extern "C" fn isochore_mesh_set_uvs(mesh: *mut Mesh, set: usize, uvs: *const f32) -> Status {
     guarded(|| {
         // SAFETY: as the caller promises.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
         // SAFETY: as the caller promises.
-        let uvs = unsafe { finite_values("uvs", uvs, 6, mesh.mesh.triangles.len(), f64::is_finite) }?;
+        let uvs = unsafe { finite_values("uvs", uvs, 6, mesh.mesh.triangles.len(), f32::is_finite) }?;
         let sets = &mut Arc::make_mut(&mut mesh.mesh).corner.uvs;
         match (set, sets.len()) {
             (set, count) if set < count => sets[set] = uvs,
@@ -40,7 +40,7 @@ pub unsafe extern "C" fn isochore_mesh_set_uvs(mesh: *mut Mesh, set: usize, uvs:
 pub unsafe extern "C" fn isochore_mesh_uvs(
     mesh: *const Mesh,
     set: usize,
-    uvs: *mut *const f64,
+    uvs: *mut *const f32,
     count: *mut usize,
 ) -> Status {
     // SAFETY: as the caller promises.

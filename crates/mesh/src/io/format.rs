@@ -13,7 +13,7 @@ pub enum Format {
     Gltf,
     /// glTF 2.0 in one binary file; holds the same as [`Gltf`](Self::Gltf).
     Glb,
-    /// Stanford PLY, written as binary doubles, normals as floats: one UV set, normals, colors.
+    /// Stanford PLY, written as binary doubles, normals and texture coordinates as floats: one UV set, normals, colors.
     Ply,
     /// STL, written in binary: single precision, positions alone.
     Stl,

@@ -1,13 +1,13 @@
 //! What vertices and corners carry besides positions.
 
-use glam::{DVec2, DVec4, Vec3};
+use glam::{DVec4, Vec2, Vec3};
 
 /// Attributes by corner: one entry a triangle, three values in the order of its vertices.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CornerAttributes {
-    /// Sets of texture coordinates, each as long as the triangles.
-    pub uvs: Vec<Vec<[DVec2; 3]>>,
-    /// Shading normals, unit length; in single precision, as renderers and glTF want them.
+    /// Sets of texture coordinates, each as long as the triangles; in single precision, as renderers and glTF want them.
+    pub uvs: Vec<Vec<[Vec2; 3]>>,
+    /// Shading normals, unit length; in single precision too.
     pub normals: Vec<[Vec3; 3]>,
     /// Linear RGBA, 0 to 1.
     pub colors: Vec<[DVec4; 3]>,

@@ -1,8 +1,8 @@
 //! Attributes on a surface that was cut anew, interpolated once from the original mesh, corner by corner.
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec3, DVec4, Vec2};
 
-use super::subdivided::{interpolate, interpolate_influences, interpolate_normal};
+use super::subdivided::{interpolate, interpolate_influences, interpolate_normal, interpolate_uv};
 use crate::{CornerAttributes, TriMesh, VertexAttributes};
 
 /// Where a vertex or a corner comes from: a point of a triangle of another mesh.
@@ -46,33 +46,14 @@ impl TriMesh {
     /// # Panics
     /// If the resampling names a triangle that this mesh does not have, or its lists have not the lengths they should.
     pub fn resampled(&self, resampling: &Resampling) -> TriMesh {
-        let each = |corner: &dyn Fn(&Origin) -> DVec4| -> Vec<[DVec4; 3]> {
-            resampling.corners.iter().map(|corners| [0, 1, 2].map(|side| corner(&corners[side]))).collect()
-        };
-        let uvs = self.corner.uvs.iter().map(|set| {
-            let at = |origin: &Origin| interpolate(&set[origin.triangle as usize], origin.weights);
-            resampling
-                .corners
-                .iter()
-                .map(|corners| [0, 1, 2].map(|side| at(&corners[side])))
-                .collect::<Vec<[DVec2; 3]>>()
-        });
-        let normals = |corners: &[Origin; 3]| {
-            corners.map(|origin| interpolate_normal(&self.corner.normals[origin.triangle as usize], origin.weights))
-        };
+        let corners = &resampling.corners;
         TriMesh {
             positions: resampling.positions.clone(),
             triangles: resampling.triangles.clone(),
             corner: CornerAttributes {
-                uvs: uvs.collect(),
-                normals: match self.corner.normals.is_empty() {
-                    true => Vec::new(),
-                    false => resampling.corners.iter().map(normals).collect(),
-                },
-                colors: match self.corner.colors.is_empty() {
-                    true => Vec::new(),
-                    false => each(&|origin| interpolate(&self.corner.colors[origin.triangle as usize], origin.weights)),
-                },
+                uvs: self.corner.uvs.iter().map(|set| resample(set, corners, interpolate_uv)).collect(),
+                normals: resample(&self.corner.normals, corners, interpolate_normal),
+                colors: resample(&self.corner.colors, corners, interpolate),
             },
             vertex: self.resampled_vertices(resampling),
             triangle_materials: match self.triangle_materials.is_empty() {
@@ -96,8 +77,8 @@ impl TriMesh {
     ///
     /// # Panics
     /// If the mesh has no such triangle or set.
-    pub fn uv_at(&self, set: usize, origin: &Origin) -> DVec2 {
-        interpolate(&self.corner.uvs[set][origin.triangle as usize], origin.weights)
+    pub fn uv_at(&self, set: usize, origin: &Origin) -> Vec2 {
+        interpolate_uv(&self.corner.uvs[set][origin.triangle as usize], origin.weights)
     }
 
     /// The color at `origin`: that of the corners, else that of the vertices; none where the mesh has neither.
@@ -135,4 +116,13 @@ impl TriMesh {
             skin: if skin.is_empty() { Vec::new() } else { origins.iter().map(influences).collect() },
         }
     }
+}
+
+/// Values at `corners`, interpolated in the triangles that hold them; none where there are no values.
+fn resample<T>(values: &[[T; 3]], corners: &[[Origin; 3]], interpolate: impl Fn(&[T; 3], DVec3) -> T) -> Vec<[T; 3]> {
+    if values.is_empty() {
+        return Vec::new();
+    }
+    let at = |origin: Origin| interpolate(&values[origin.triangle as usize], origin.weights);
+    corners.iter().map(|corners| corners.map(at)).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul};
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use crate::{CornerAttributes, TriMesh, VertexAttributes};
 
@@ -43,9 +43,9 @@ impl TriMesh {
             positions: subdivision.positions.clone(),
             triangles: children.iter().map(|child| child.vertices).collect(),
             corner: CornerAttributes {
-                uvs: self.corner.uvs.iter().map(|set| interpolate_corners(set, children)).collect(),
-                normals: interpolate_normals(&self.corner.normals, children),
-                colors: interpolate_corners(&self.corner.colors, children),
+                uvs: self.corner.uvs.iter().map(|set| interpolate_corners(set, children, interpolate_uv)).collect(),
+                normals: interpolate_corners(&self.corner.normals, children, interpolate_normal),
+                colors: interpolate_corners(&self.corner.colors, children, interpolate),
             },
             vertex: self.subdivided_vertices(subdivision),
             triangle_materials: match materials.is_empty() {
@@ -109,10 +109,11 @@ where
     sum.unwrap_or_default()
 }
 
-fn interpolate_corners<T>(values: &[[T; 3]], children: &[SubTriangle]) -> Vec<[T; 3]>
-where
-    T: Copy + Default + PartialEq + Add<Output = T> + Mul<f64, Output = T>,
-{
+fn interpolate_corners<T>(
+    values: &[[T; 3]],
+    children: &[SubTriangle],
+    interpolate: impl Fn(&[T; 3], DVec3) -> T,
+) -> Vec<[T; 3]> {
     if values.is_empty() {
         return Vec::new();
     }
@@ -120,15 +121,9 @@ where
     children.iter().map(at).collect()
 }
 
-fn interpolate_normals(normals: &[[Vec3; 3]], children: &[SubTriangle]) -> Vec<[Vec3; 3]> {
-    if normals.is_empty() {
-        return Vec::new();
-    }
-    let at = |child: &SubTriangle| {
-        let parent = &normals[child.parent as usize];
-        child.corners.map(|weights| interpolate_normal(parent, weights))
-    };
-    children.iter().map(at).collect()
+/// Texture coordinates between three, rounded once.
+pub(super) fn interpolate_uv(corners: &[Vec2; 3], weights: DVec3) -> Vec2 {
+    interpolate(&corners.map(|uv| uv.as_dvec2()), weights).as_vec2()
 }
 
 /// The unit normal between three; where they cancel, that of the heaviest corner, which is as good as any.

@@ -10,7 +10,7 @@ mod stl_off;
 mod untrusted;
 mod writing;
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec3, DVec4, Vec2};
 use isochore_mesh::io::{self, Format, ParseError};
 use isochore_mesh::{TriMesh, primitives};
 
@@ -41,7 +41,8 @@ fn seamed_box() -> TriMesh {
     let normals: Vec<DVec3> = (0..mesh.triangles.len()).map(flat).collect();
     let uv = |position: DVec3, normal: DVec3| {
         let axis = normal.abs().max_position();
-        DVec2::new(position[(axis + 1) % 3], position[(axis + 2) % 3]) / 8.0 + DVec2::splat(0.5)
+        let position = position.as_vec3();
+        Vec2::new(position[(axis + 1) % 3], position[(axis + 2) % 3]) / 8.0 + Vec2::splat(0.5)
     };
     let uvs = (0..mesh.triangles.len()).map(|t| mesh.corners(t).map(|position| uv(position, normals[t])));
     mesh.corner.uvs = vec![uvs.collect()];

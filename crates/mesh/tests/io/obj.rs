@@ -165,7 +165,7 @@ fn order_and_partial_attributes_survive() {
     assert_eq!(mesh.triangles, [[3, 1, 2], [4, 3, 2], [1, 2, 4]]);
     assert_eq!(mesh.triangle_materials, [0, 1, 1]);
     assert_eq!(mesh.materials, ["", "two  words"]);
-    let uvs: Vec<f64> = mesh.corner.uvs[0].iter().map(|corners| corners[1].x).collect();
+    let uvs: Vec<f32> = mesh.corner.uvs[0].iter().map(|corners| corners[1].x).collect();
     assert_eq!(uvs, [0.5, 0.0, 0.0]);
     let normals: Vec<f32> = mesh.corner.normals.iter().map(|corners| corners[0].x).collect();
     assert_eq!((normals[0], normals[2]), (1.0, 1.0));

@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use isochore_mesh::io::{self, Format};
 use isochore_mesh::{TriMesh, primitives};
 
@@ -31,7 +31,8 @@ fn obj_agrees_with_tobj() {
                 normals.push([0, 1, 2].map(|corner| triple(corners[corner], &theirs.normals).as_vec3()));
             }
             for corners in theirs.texcoord_indices.chunks_exact(3) {
-                uvs.push([0, 1, 2].map(|c| glam::DVec2::from_slice(&theirs.texcoords[2 * corners[c] as usize..])));
+                let uv = |index: u32| DVec2::from_slice(&theirs.texcoords[2 * index as usize..]).as_vec2();
+                uvs.push([0, 1, 2].map(|corner| uv(corners[corner])));
             }
         }
         assert_eq!(corner_positions(&ours), positions);

@@ -1,4 +1,4 @@
-use glam::{DVec2, DVec3, DVec4, Vec3};
+use glam::{DVec3, DVec4, Vec2, Vec3};
 use isochore_mesh::io::{self, Format};
 
 use crate::{parse, seamed_box, written};
@@ -15,7 +15,7 @@ fn text_is_read() {
     assert_eq!(mesh.triangles.len(), 3);
     assert_eq!(mesh.positions[1], DVec3::new(1.0, 0.1, 0.0));
     assert_eq!(mesh.vertex.colors[0], DVec4::new(1.0, 0.0, 0.2, 1.0));
-    assert_eq!(mesh.corner.uvs[0][2][2], DVec2::new(0.5, 0.0));
+    assert_eq!(mesh.corner.uvs[0][2][2], Vec2::new(0.5, 0.0));
     assert_eq!(mesh.corner.normals[0], [Vec3::Z; 3]);
 }
 
@@ -42,7 +42,7 @@ fn written_surface_is_closed_for_readers_that_do_not_weld() {
     let bytes = written(Format::Ply, &seamed_box());
     let header = String::from_utf8_lossy(&bytes);
     assert!(header.contains("element vertex 30\n"), "a vertex was split");
-    assert!(header.contains("property list uchar double texcoord\n"));
+    assert!(header.contains("property list uchar float texcoord\n"));
     assert!(header.contains("property float red\n"));
 }
 
@@ -92,8 +92,8 @@ fn faces_may_come_before_vertices_and_be_of_any_size() {
     let mesh = parse(Format::Ply, text).unwrap();
     assert_eq!(mesh.positions[4], DVec3::new(0.0, 0.0, 2.0));
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 4]]);
-    assert_eq!(mesh.corner.uvs[0][1], [DVec2::ZERO; 3]);
-    assert_eq!(mesh.corner.uvs[0][2], [DVec2::ZERO, DVec2::X, DVec2::new(0.5, 0.0)]);
+    assert_eq!(mesh.corner.uvs[0][1], [Vec2::ZERO; 3]);
+    assert_eq!(mesh.corner.uvs[0][2], [Vec2::ZERO, Vec2::X, Vec2::new(0.5, 0.0)]);
 }
 
 #[test]

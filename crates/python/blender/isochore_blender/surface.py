@@ -14,9 +14,13 @@ FIELDS = {
 }
 """Where attributes of a type have their numbers, how many, and of which kind. Those of other types are lost."""
 
-ON_EDGE = 1e-9
-"""Barycentric coordinates below this are 0. If smaller than rounding, edges cut elsewhere than in the middle were lost;
-if larger, short edges near another were taken for a part of it."""
+ON_EDGE = 1e-7
+"""Barycentric coordinates below this are 0. If smaller than the rounding of two of them to single precision, edges cut elsewhere
+than in the middle were lost; if larger, short edges near another were taken for a part of it."""
+
+NUMBERS_IN_PART = 1 << 20
+"""Numbers of triangles are told by their quotient and remainder of this. If larger than 2^24, single precision had not all remainders;
+if smaller, not all quotients of large meshes."""
 
 
 class Surface:
@@ -38,10 +42,11 @@ class Surface:
         """Two sets of texture coordinates that tell, after refinement, where a corner came from.
 
         The first is the barycentric coordinates of the second and third corner. The second is the number of the triangle, the
-        same at all corners, so that all parts of a triangle have it.
+        same at all corners, so that all parts of a triangle have it; single precision holds it in two parts.
         """
         corners = np.tile([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], (len(self.triangles), 1, 1))
-        numbers = np.repeat(np.arange(len(self.triangles), dtype=float), 6).reshape(-1, 3, 2)
+        parts = np.divmod(np.arange(len(self.triangles)), NUMBERS_IN_PART)
+        numbers = np.repeat(np.stack(parts, axis=1)[:, None], 3, axis=1)
         return [corners, numbers]
 
     def normals(self):
@@ -63,8 +68,9 @@ class Surface:
     def replace(self, positions, triangles, uvs):
         """Puts refined triangles, with the sets of `uvs` that came of ours, in place of the polygons. Returns what was lost."""
         corners, numbers = uvs
+        corners = corners.astype(float)
         weights = np.dstack([1.0 - corners.sum(axis=2), corners])[:, :: self.order, :]
-        source = np.rint(numbers[:, 0, 0]).astype(int)
+        source = np.rint(numbers[:, 0]).astype(int) @ [NUMBERS_IN_PART, 1]
         triangles = triangles[:, :: self.order].astype(np.int32)
         attributes, lost = self._attributes()
         groups = [(group.name, group.lock_weight) for group in self.target.vertex_groups]

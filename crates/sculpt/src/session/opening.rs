@@ -56,7 +56,7 @@ fn is_same_normal(one: Vec3, other: Vec3) -> bool {
 pub(super) fn is_same_corner(mesh: &TriMesh, [one, other]: [(u32, usize); 2]) -> bool {
     let [(a, i), (b, j)] = [one, other].map(|(triangle, side)| (triangle as usize, side));
     let corner = &mesh.corner;
-    corner.uvs.iter().all(|set| set[a][i].to_array().map(f64::to_bits) == set[b][j].to_array().map(f64::to_bits))
+    corner.uvs.iter().all(|set| set[a][i].to_array().map(f32::to_bits) == set[b][j].to_array().map(f32::to_bits))
         && (corner.normals.is_empty() || is_same_normal(corner.normals[a][i], corner.normals[b][j]))
         && (corner.colors.is_empty()
             || corner.colors[a][i].to_array().map(f64::to_bits) == corner.colors[b][j].to_array().map(f64::to_bits))

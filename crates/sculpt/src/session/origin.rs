@@ -73,7 +73,7 @@ fn nearest_weights(point: DVec3, corners: &[DVec3; 3]) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DVec2, dvec2, dvec3};
+    use glam::{Vec2, dvec3, vec2};
 
     use super::*;
 
@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn a_seam_is_not_crossed() {
         let mut mesh = pair();
-        let uv = |side: f64| [dvec2(side, 0.0), dvec2(side, 1.0), DVec2::ONE];
+        let uv = |side: f32| [vec2(side, 0.0), vec2(side, 1.0), Vec2::ONE];
         mesh.corner.uvs = vec![vec![uv(0.0), uv(5.0)]];
         let end = Origin { triangle: 0, weights: dvec3(0.0, 1.0, 0.0) };
         assert_eq!(weights_in(&mesh, &end, 1), None);

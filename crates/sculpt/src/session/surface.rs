@@ -371,7 +371,7 @@ impl Surface {
             for &renewed in &self.renewed {
                 let origin = &render[renewed as usize].origin;
                 set[renewed as usize] =
-                    origin.as_ref().map_or([0.0; 2], |origin| opened.uv_at(index, origin).as_vec2().to_array());
+                    origin.as_ref().map_or([0.0; 2], |origin| opened.uv_at(index, origin).to_array());
             }
         }
         if !(opened.corner.colors.is_empty() && opened.vertex.colors.is_empty()) {

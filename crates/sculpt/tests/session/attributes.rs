@@ -15,7 +15,7 @@ pub(crate) fn painted_ball() -> TriMesh {
         let corners = triangle.map(|vertex| mesh.positions[vertex as usize]);
         let us = corners.map(around);
         let breaks = us.iter().cloned().fold(0.0, f64::max) - us.iter().cloned().fold(1.0, f64::min) > 0.5;
-        [0, 1, 2].map(|i| DVec2::new(if breaks && us[i] < 0.5 { us[i] + 1.0 } else { us[i] }, corners[i].z))
+        [0, 1, 2].map(|i| DVec2::new(if breaks && us[i] < 0.5 { us[i] + 1.0 } else { us[i] }, corners[i].z).as_vec2())
     };
     mesh.corner.uvs = vec![mesh.triangles.iter().map(uv).collect()];
     mesh.materials = vec!["north".to_owned(), "south".to_owned()];
@@ -61,7 +61,7 @@ fn render_vertices_follow_their_vertices_and_seams_stay_closed() {
             assert_eq!(buffers.positions[corner as usize], position.as_vec3().to_array());
             // Attributes are those of the origin, interpolated once.
             let origin = session.origin_of(corner).unwrap();
-            assert_eq!(buffers.uvs[0][corner as usize], opened.uv_at(0, &origin).as_vec2().to_array());
+            assert_eq!(buffers.uvs[0][corner as usize], opened.uv_at(0, &origin).to_array());
             assert_eq!(buffers.colors[corner as usize], opened.color_at(&origin).unwrap().as_vec4().to_array());
             assert!((origin.weights.element_sum() - 1.0).abs() < 1e-15 && origin.weights.min_element() >= 0.0);
             inserted += usize::from(vertex as usize >= vertices);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
-use glam::{DMat3, DVec2, DVec3, DVec4, Vec3};
+use glam::{DMat3, DVec2, DVec3, DVec4, Vec2, Vec3};
 use serde_json::Value;
 
 use super::document::{Document, malformed};
@@ -44,7 +44,7 @@ struct Soup {
     positions: Vec<DVec3>,
     /// Zero where the file gives none.
     normals: Column<Vec3>,
-    uvs: Vec<Column<DVec2>>,
+    uvs: Vec<Column<Vec2>>,
     colors: Column<DVec4>,
     influences: Column<Vec<(u32, f64)>>,
     triangles: Vec<[u32; 3]>,
@@ -184,12 +184,12 @@ impl Soup {
             self.normals.add(base, normals, Vec3::ZERO);
         }
         for (set, &accessor) in attributes.uvs.iter().enumerate() {
-            let uvs = document.vectors(accessor, DVec2::from_array)?;
+            let uvs = document.vectors(accessor, |uv| DVec2::from_array(uv).as_vec2())?;
             expect(uvs.len())?;
             if self.uvs.len() <= set {
                 self.uvs.push(Column::default());
             }
-            self.uvs[set].add(base, uvs, DVec2::ZERO);
+            self.uvs[set].add(base, uvs, Vec2::ZERO);
         }
         if let Some(accessor) = attributes.colors {
             let colors: Vec<DVec4> = match document.components(accessor)? {
@@ -274,7 +274,7 @@ impl Soup {
             false => by_corner(&triangles, &normals),
         };
         let sets = self.uvs.into_iter();
-        let uvs = sets.map(|set| by_corner(&triangles, &set.complete(count, DVec2::ZERO))).collect();
+        let uvs = sets.map(|set| by_corner(&triangles, &set.complete(count, Vec2::ZERO))).collect();
         let materials = self.materials.complete(triangles.len(), None);
         let (materials, triangle_materials) = name_materials(json, &materials);
         let mut skin = self.influences.complete(count, Vec::new());

@@ -103,7 +103,7 @@ impl Document {
             attributes.insert("NORMAL".into(), self.push_floats("VEC3", normals));
         }
         for (number, set) in mesh.corner.uvs.iter().enumerate() {
-            let uvs = split.values(set, Default::default()).map(|uv| uv.as_vec2().to_array());
+            let uvs = split.values(set, Default::default()).map(|uv| uv.to_array());
             attributes.insert(format!("TEXCOORD_{number}"), self.push_floats("VEC2", uvs));
         }
         if !mesh.corner.colors.is_empty() {

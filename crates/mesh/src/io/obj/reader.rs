@@ -4,7 +4,7 @@ use std::io::{BufRead, Read};
 use std::iter::repeat_n;
 use std::path::Path;
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4, Vec2};
 
 use super::fault::check_lines;
 use super::lines::{Kept, Lines, split_vertex};
@@ -120,7 +120,9 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
     let mut kinds = kept.runs.iter().flat_map(|&(kind, faces)| repeat_n(kind, faces));
     let mut vertices = &kept.corners[..];
     for object in objects {
-        let uv = |corner: usize| DVec2::from_slice(&object.texcoords[2 * object.texcoord_indices[corner] as usize..]);
+        let uv = |corner: usize| {
+            DVec2::from_slice(&object.texcoords[2 * object.texcoord_indices[corner] as usize..]).as_vec2()
+        };
         let normal =
             |corner: usize| DVec3::from_slice(&object.normals[3 * object.normal_indices[corner] as usize..]).as_vec3();
         let mut start = 0;
@@ -138,7 +140,7 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
                     mesh.triangle_materials.push(kind.material);
                 }
                 if has_uvs {
-                    uvs.push(triangle.map(|corner| if kind.has_uvs { uv(start + corner) } else { DVec2::ZERO }));
+                    uvs.push(triangle.map(|corner| if kind.has_uvs { uv(start + corner) } else { Vec2::ZERO }));
                 }
                 if has_normals {
                     mesh.corner.normals.push(match kind.has_normals {

@@ -8,8 +8,8 @@ use rustc_hash::FxHashMap;
 use crate::TriMesh;
 use crate::io::text::{LineWriter, Number};
 
-/// Writes OBJ. Numbers are the shortest decimals that read back as the same ones, normals in single
-/// precision. Of several UV sets the first is written; corner colors, skin and textures have no place in the format.
+/// Writes OBJ. Numbers are the shortest decimals that read back as the same ones, normals and texture coordinates
+/// in single precision. Of several UV sets the first is written; corner colors, skin and textures have no place in the format.
 pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
     let mut out = LineWriter::new(writer);
     for library in &mesh.assets.material_libraries {

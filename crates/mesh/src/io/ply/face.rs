@@ -1,6 +1,6 @@
 //! The faces of a PLY file.
 
-use glam::{DVec2, DVec3, DVec4, Vec3};
+use glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
 use ply_rs_bw::ply::{BeginList, ElementDef, PropertyAccess, PropertyAccessResult};
 
 use super::body::Body;
@@ -13,7 +13,7 @@ use crate::io::polygon::triangulate;
 #[derive(Default)]
 pub(super) struct Triangles {
     pub(super) vertices: Vec<[u32; 3]>,
-    pub(super) uvs: Vec<[DVec2; 3]>,
+    pub(super) uvs: Vec<[Vec2; 3]>,
     pub(super) normals: Vec<[Vec3; 3]>,
     pub(super) colors: Vec<[DVec4; 3]>,
     /// Of the face at hand: its vertices, their positions, and the corners of its triangles.
@@ -54,7 +54,7 @@ impl Triangles {
         triangulate(&self.polygon, |triangle| self.split.push(triangle));
         self.vertices.extend(self.split.iter().map(|triangle| triangle.map(|corner| self.corners[corner])));
 
-        let uv = |list: &[f64]| <[f64; 2]>::try_from(list).ok().map(DVec2::from_array);
+        let uv = |list: &[f64]| <[f64; 2]>::try_from(list).ok().map(|uv| DVec2::from_array(uv).as_vec2());
         let normal = |list: &[f64]| <[f64; 3]>::try_from(list).ok().map(|normal| DVec3::from_array(normal).as_vec3());
         let color = |list: &[f64]| match *list {
             [r, g, b] => Some(DVec4::new(r, g, b, 1.0)),

@@ -1,6 +1,6 @@
 //! The vertices of a PLY file.
 
-use glam::{DVec2, DVec3, DVec4, Vec3};
+use glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyAccess, PropertyAccessResult};
 
@@ -13,7 +13,7 @@ use crate::io::ParseError;
 pub(super) struct Vertices {
     pub(super) positions: Vec<DVec3>,
     pub(super) normals: Vec<Vec3>,
-    pub(super) uvs: Vec<DVec2>,
+    pub(super) uvs: Vec<Vec2>,
     pub(super) colors: Vec<DVec4>,
 }
 
@@ -34,7 +34,7 @@ impl Vertices {
                 vertices.normals.push(vertex.normal.as_vec3());
             }
             if has_uvs {
-                vertices.uvs.push(vertex.uv);
+                vertices.uvs.push(vertex.uv.as_vec2());
             }
             if has_colors {
                 vertices.colors.push(vertex.color);

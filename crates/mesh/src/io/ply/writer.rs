@@ -7,7 +7,7 @@ use glam::DVec4;
 use crate::TriMesh;
 use crate::io::text::{FLUSH_AT, flush};
 
-/// Writes binary little-endian PLY with doubles, and normals in floats, as meshes have them. Colors are bytes where bytes say the
+/// Writes binary little-endian PLY with doubles, and normals and texture coordinates in floats, as meshes have them. Colors are bytes where bytes say the
 /// same, else floats.
 ///
 /// Of several UV sets the first is written; skin, materials and textures have no place in the format.
@@ -26,7 +26,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
         header.push_str("property float nx\nproperty float ny\nproperty float nz\n");
     }
     if vertex_uvs.is_some() {
-        header.push_str("property double s\nproperty double t\n");
+        header.push_str("property float s\nproperty float t\n");
     }
     if !mesh.vertex.colors.is_empty() {
         for name in ["red", "green", "blue", "alpha"] {
@@ -37,7 +37,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
     header.push_str("property list uchar uint vertex_indices\n");
     let has_uv_lists = vertex_uvs.is_none() && !uvs.is_empty();
     if has_uv_lists {
-        header.push_str("property list uchar double texcoord\n");
+        header.push_str("property list uchar float texcoord\n");
     }
     let has_normal_lists = vertex_normals.is_none() && !normals.is_empty();
     if has_normal_lists {
@@ -56,7 +56,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
             push_singles(&mut records, normals[vertex].to_array());
         }
         if let Some(uvs) = &vertex_uvs {
-            push_doubles(&mut records, uvs[vertex].to_array());
+            push_singles(&mut records, uvs[vertex].to_array());
         }
         if let Some(&color) = mesh.vertex.colors.get(vertex) {
             vertex_color_depth.push(&mut records, color);
@@ -68,7 +68,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
         vertices.iter().for_each(|vertex| records.extend_from_slice(&vertex.to_le_bytes()));
         if has_uv_lists {
             records.push(6);
-            uvs[triangle].iter().for_each(|uv| push_doubles(&mut records, uv.to_array()));
+            uvs[triangle].iter().for_each(|uv| push_singles(&mut records, uv.to_array()));
         }
         if has_normal_lists {
             records.push(9);
