@@ -189,6 +189,7 @@ impl DistanceField {
                 (open_edges, volume_and_centroid)
             });
         let bvh = Arc::new(bvh);
+        monitor.check("hierarchy", 0.5)?;
         let search = PacketSearch::new(&bvh, &grid);
         let is_closed = open_edges.is_empty();
         if let Some((volume, _)) = volume_and_centroid.filter(|&(volume, _)| volume < 0.0) {
@@ -210,8 +211,7 @@ impl DistanceField {
             Padding::Length(length) => (length - 2.0 * grid.cell).max(0.0).min(reach_of_band),
             Padding::Cells(cells) => (cells.saturating_sub(2) as f64 * grid.cell).min(reach_of_band),
         };
-        monitor.check("spline", 0.0)?;
-        let interpolant = Interpolant::new(&grid, &samples);
+        let interpolant = Interpolant::new(&grid, &samples, monitor)?;
         Ok(Self { grid, samples, sample_error, interpolant, surface, centroid, reach, is_closed })
     }
 

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::Grid;
 use super::lipschitz::lipschitz;
 use super::spline::coefficients;
-use crate::{DistanceBlock, PointBlock};
+use crate::{Cancelled, DistanceBlock, Monitor, PointBlock};
 use kernel::{Frame, Lattice};
 
 /// The cubic spline through the samples of a grid.
@@ -32,11 +32,13 @@ pub(super) struct Interpolant {
 const VALUE_ROUNDING: f64 = 65.0 / (1 << 24) as f64;
 
 impl Interpolant {
-    pub(super) fn new(grid: &Grid, samples: &[f32]) -> Self {
-        let coefficients = coefficients(samples, grid.dims);
-        let lipschitz = lipschitz(grid, &coefficients);
+    pub(super) fn new(grid: &Grid, samples: &[f32], monitor: &dyn Monitor) -> Result<Self, Cancelled> {
+        monitor.check("spline", 0.0)?;
+        let coefficients = coefficients(samples, grid.dims, monitor)?;
+        monitor.check("spline", 0.5)?;
+        let lipschitz = lipschitz(grid, &coefficients, monitor)?;
         let spread = f64::from(largest_difference(&coefficients, grid.dims)) * STENCIL_STEPS;
-        Self { frame: Frame::new(grid), coefficients, lipschitz, spread }
+        Ok(Self { frame: Frame::new(grid), coefficients, lipschitz, spread })
     }
 
     pub(super) fn lipschitz(&self) -> f64 {

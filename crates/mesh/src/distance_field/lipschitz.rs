@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use super::Grid;
 use super::real::Real;
 use crate::extremes::{greater, lesser};
+use crate::{Cancelled, Monitor};
 
 /// Covers the rounding of the arithmetic in `f64`.
 const ROUNDING: f64 = 1.0 + 1e-12;
@@ -31,10 +32,10 @@ const LANES: usize = 16;
 type Control<T, const N: usize> = [[[[T; N]; 4]; 4]; 4];
 
 /// Upper bound on the length of the gradient in all cells that have all neighbors and where the spline may be positive.
-pub(super) fn lipschitz(grid: &Grid, coefficients: &[f32]) -> f64 {
+pub(super) fn lipschitz(grid: &Grid, coefficients: &[f32], monitor: &dyn Monitor) -> Result<f64, Cancelled> {
     let [nx, ny, nz] = grid.dims;
     if nx < 4 || ny < 4 || nz < 4 {
-        return 0.0;
+        return Ok(0.0);
     }
     let layer = nx * ny;
     let mut bounds = vec![0.0; layer * (nz - 3)];
@@ -44,16 +45,17 @@ pub(super) fn lipschitz(grid: &Grid, coefficients: &[f32]) -> f64 {
     let refine = |cell: usize| {
         known.fetch_max(halved_bound(&coefficients[cell..], nx, layer).to_bits(), Relaxed);
     };
-    bounds.par_chunks_mut(layer).enumerate().for_each(|(k, bounds)| {
+    bounds.par_chunks_mut(layer).enumerate().try_for_each(|(k, bounds)| {
         let steepest = bound_layer(&coefficients[k * layer..], nx, bounds);
         refine(k * layer + steepest);
-    });
+        if monitor.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    })?;
     bounds.par_iter().enumerate().for_each(|(cell, &bound)| {
         if f64::from(bound) > f64::from_bits(known.load(Relaxed)) {
             refine(cell);
         }
     });
-    f64::from_bits(known.into_inner()).sqrt() / grid.cell * ROUNDING
+    Ok(f64::from_bits(known.into_inner()).sqrt() / grid.cell * ROUNDING)
 }
 
 /// Sets squared bounds on the gradient in the cells of a layer, zero where the spline is not positive; the first coefficient of the

@@ -7,6 +7,7 @@
 use rayon::prelude::*;
 
 use super::real::Real;
+use crate::{Cancelled, Monitor};
 
 /// The pole of the cubic spline filter, √3 − 2.
 const POLE: f64 = -0.267_949_192_431_122_7;
@@ -21,11 +22,11 @@ const START_TERMS: usize = 28;
 const ROWS: usize = 8;
 
 /// Coefficients of the spline through `samples` (x fastest).
-pub(super) fn coefficients(samples: &[f32], dims: [usize; 3]) -> Vec<f32> {
+pub(super) fn coefficients(samples: &[f32], dims: [usize; 3], monitor: &dyn Monitor) -> Result<Vec<f32>, Cancelled> {
     let [nx, ny, nz] = dims;
     let layer = nx * ny;
     let mut work = vec![0.0; samples.len()];
-    work.par_chunks_mut(layer).zip(samples.par_chunks(layer)).for_each(|(work, samples)| {
+    work.par_chunks_mut(layer).zip(samples.par_chunks(layer)).try_for_each(|(work, samples)| {
         let mut rows = vec![0.0; ROWS * nx];
         for (work, samples) in work.chunks_mut(ROWS * nx).zip(samples.chunks(ROWS * nx)) {
             for (row, samples) in samples.chunks(nx).enumerate() {
@@ -37,7 +38,9 @@ pub(super) fn coefficients(samples: &[f32], dims: [usize; 3]) -> Vec<f32> {
             }
         }
         filter(work, nx);
-    });
+        if monitor.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    })?;
+    monitor.check("spline", 0.25)?;
     // Along z the lines cross all layers: each task takes those of one row of x, copied out and back.
     let mut coefficients = vec![0.0; samples.len()];
     let mut rows: Vec<Vec<&mut [f32]>> = (0..ny).map(|_| Vec::with_capacity(nz)).collect();
@@ -50,7 +53,7 @@ pub(super) fn coefficients(samples: &[f32], dims: [usize; 3]) -> Vec<f32> {
             out.iter_mut().zip(line).for_each(|(out, &value)| *out = value as f32);
         }
     });
-    coefficients
+    Ok(coefficients)
 }
 
 /// Filters `width` interleaved lines at once: the samples of each are `width` apart.
@@ -119,6 +122,7 @@ pub(super) fn weight_derivatives<T: Real>(t: T) -> [T; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Silent;
 
     fn samples(count: usize) -> Vec<f32> {
         // Any numbers without structure: multiples of an irrational, fractional parts.
@@ -129,7 +133,7 @@ mod tests {
     fn spline_goes_through_the_samples() {
         for dims in [[7, 6, 5], [2, 9, 3], [1, 1, 8], [40, 3, 2]] {
             let samples = samples(dims.iter().product());
-            let coefficients = coefficients(&samples, dims);
+            let coefficients = coefficients(&samples, dims, &Silent).unwrap();
             let [nx, ny, nz] = dims;
             // At a node the weights are 1/6, 4/6, 1/6 along each axis, across the ends mirrored.
             let at = |i: isize, nodes: usize| {

@@ -316,16 +316,40 @@ fn bad_input_is_named() {
 }
 
 #[test]
-fn stops_when_cancelled() {
+fn stops_in_every_stage_when_cancelled() {
+    use std::sync::Mutex;
     use std::sync::atomic::{AtomicUsize, Ordering};
-    struct StopAfter(AtomicUsize);
+    #[derive(Default)]
+    struct StopAfter {
+        limit: usize,
+        asked: AtomicUsize,
+        stage: Mutex<&'static str>,
+    }
     impl Monitor for StopAfter {
+        fn update(&self, stage: &'static str, done: f64) {
+            assert!((0.0..=1.0).contains(&done));
+            *self.stage.lock().unwrap() = stage;
+        }
+
         fn is_cancelled(&self) -> bool {
-            self.0.fetch_add(1, Ordering::Relaxed) > 3
+            self.asked.fetch_add(1, Ordering::Relaxed) >= self.limit
         }
     }
-    let result = DistanceField::new(&bumpy(), &Default::default(), &StopAfter(AtomicUsize::new(0)));
-    assert_eq!(result.unwrap_err(), DistanceFieldError::Cancelled(Cancelled));
+    let stopping = |limit: usize| {
+        let monitor = StopAfter { limit, ..Default::default() };
+        let result = DistanceField::new(&bumpy(), &Default::default(), &monitor).map(|_| ());
+        (result, monitor.asked.into_inner(), monitor.stage.into_inner().unwrap())
+    };
+    let (result, asked, last) = stopping(usize::MAX);
+    assert_eq!((result, last), (Ok(()), "spline"));
+    let mut stages = Vec::new();
+    for limit in 0..asked {
+        let (result, _, stage) = stopping(limit);
+        assert_eq!(result, Err(DistanceFieldError::Cancelled(Cancelled)), "after {limit}");
+        stages.push(stage);
+    }
+    stages.dedup();
+    assert_eq!(stages, ["hierarchy", "distance", "signs", "spline"]);
 }
 
 #[test]
