@@ -63,7 +63,10 @@ fn main() {
         large.corner.normals = by_corner(&large, |vertex| normals[vertex].as_vec3());
         compare_formats(&large, ", with normals", &[(Format::Glb, "glb")], &[]);
         large.corner.uvs = vec![by_corner(&large, |vertex| normals[vertex].truncate().as_vec2())];
-        compare_formats(&large, ", with texture coordinates and normals", &[(Format::Obj, "obj")], &[]);
+        let both = [(Format::Obj, "obj"), (Format::Glb, "glb")];
+        compare_formats(&large, ", with texture coordinates and normals", &both, &[]);
+        large.corner.normals.clear();
+        compare_formats(&large, ", with texture coordinates", &[(Format::Glb, "glb")], &[]);
     });
 }
 
@@ -188,15 +191,16 @@ fn read_with_stl_io(path: &Path) -> f64 {
     f64::from(read.vertices[0].0[0])
 }
 
-/// Coordinates of a vertex or indices of a face, without any other property.
+/// Coordinates and normal of a vertex, or indices of a face.
 struct PlyElement {
     position: [f64; 3],
+    normal: [f32; 3],
     indices: Vec<u32>,
 }
 
 impl PropertyAccess for PlyElement {
     fn new() -> Self {
-        Self { position: [0.0; 3], indices: Vec::new() }
+        Self { position: [0.0; 3], normal: [0.0; 3], indices: Vec::new() }
     }
 
     fn set_double(&mut self, name: &str, value: f64) -> PropertyAccessResult {
@@ -204,6 +208,14 @@ impl PropertyAccess for PlyElement {
             return PropertyAccessResult::Ignored;
         };
         self.position[axis] = value;
+        PropertyAccessResult::Set
+    }
+
+    fn set_float(&mut self, name: &str, value: f32) -> PropertyAccessResult {
+        let Some(axis) = ["nx", "ny", "nz"].iter().position(|&axis| axis == name) else {
+            return PropertyAccessResult::Ignored;
+        };
+        self.normal[axis] = value;
         PropertyAccessResult::Set
     }
 
@@ -216,7 +228,8 @@ fn read_with_ply_rs(path: &Path) -> f64 {
     let parser = Parser::<PlyElement>::new();
     let read = parser.read_ply(&mut Cursor::new(bytes(path))).expect("the file is sound");
     let face = &read.payload["face"][0];
-    read.payload["vertex"][face.indices[0] as usize].position[0]
+    let vertex = &read.payload["vertex"][face.indices[0] as usize];
+    vertex.position[0] + f64::from(vertex.normal[0])
 }
 
 fn read_with_gltf(path: &Path) -> f64 {
@@ -226,8 +239,9 @@ fn read_with_gltf(path: &Path) -> f64 {
         let reader = primitive.reader(|_| document.blob.as_deref());
         let positions: Vec<[f32; 3]> = reader.read_positions().into_iter().flatten().collect();
         let normals: Vec<[f32; 3]> = reader.read_normals().into_iter().flatten().collect();
+        let uvs: Vec<[f32; 2]> = reader.read_tex_coords(0).into_iter().flat_map(|uvs| uvs.into_f32()).collect();
         let indices: Vec<u32> = reader.read_indices().into_iter().flat_map(|indices| indices.into_u32()).collect();
-        sum += f64::from(positions[indices[0] as usize][0]) + normals.len() as f64;
+        sum += f64::from(positions[indices[0] as usize][0]) + (normals.len() + uvs.len()) as f64;
     }
     sum
 }

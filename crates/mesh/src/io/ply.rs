@@ -7,6 +7,7 @@
 mod body;
 mod face;
 mod header;
+mod plain_triangle;
 mod reader;
 mod vertex;
 mod writer;

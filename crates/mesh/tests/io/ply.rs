@@ -115,3 +115,39 @@ fn quadrilaterals_among_triangles_are_read_from_binary_files() {
     let error = io::read_bytes(Format::Ply, &file).unwrap_err().to_string();
     assert_eq!(error, "face 2 names vertex 9, but the file has 5 vertices");
 }
+
+/// Triangles are read as plain numbers as long as nothing else comes, in parts of some thousand.
+#[test]
+fn polygons_may_come_after_many_triangles() {
+    const TRIANGLES: usize = 5000;
+    for (format, to_bytes) in
+        [("binary_little_endian", u32::to_le_bytes as fn(u32) -> [u8; 4]), ("binary_big_endian", u32::to_be_bytes)]
+    {
+        let header = format!(
+            "ply\nformat {format} 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+             element face {}\nproperty uchar flag\nproperty list uchar uint vertex_indices\nproperty float quality\nend_header\n",
+            TRIANGLES + 2
+        );
+        let mut file = header.into_bytes();
+        for coordinate in [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0] {
+            file.extend(to_bytes(coordinate.to_bits()));
+        }
+        let faces = (0..TRIANGLES as u32).map(|i| vec![i % 4, (i + 1) % 4, (i + 2) % 4]);
+        for face in faces.clone().chain([vec![0, 1, 2, 3], vec![1, 2, 3]]) {
+            file.extend([7, face.len() as u8]);
+            face.iter().for_each(|&vertex| file.extend(to_bytes(vertex)));
+            file.extend(to_bytes(0.5_f32.to_bits()));
+        }
+        let mesh = io::read_bytes(Format::Ply, &file).unwrap();
+        let last = [[0, 1, 2], [0, 2, 3], [1, 2, 3]];
+        let expected: Vec<[u32; 3]> = faces.map(|face| [face[0], face[1], face[2]]).chain(last).collect();
+        assert_eq!(mesh.triangles, expected);
+
+        let error = io::read_bytes(Format::Ply, &file[..file.len() - 1]).unwrap_err().to_string();
+        assert_eq!(error, "the file is truncated: it ends in face 5001, counted from zero");
+        let vertex = file.len() - 8;
+        file[vertex..vertex + 4].copy_from_slice(&to_bytes(4));
+        let error = io::read_bytes(Format::Ply, &file).unwrap_err().to_string();
+        assert_eq!(error, "face 5001 names vertex 4, but the file has 4 vertices");
+    }
+}

@@ -1,6 +1,7 @@
 //! The data of a PLY file.
 
 use std::io::ErrorKind;
+use std::ops::Range;
 
 use ply_rs_bw::parser::{self, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyAccess};
@@ -41,19 +42,34 @@ impl<'a> Body<'a> {
         element: &ElementDef,
         mut take: impl FnMut(usize, E) -> Result<(), ParseError>,
     ) -> Result<(), ParseError> {
-        let parser = Parser::<E>::new();
-        let mut part = element.clone();
-        let start = self.reader.line().max(1);
-        for first in (0..element.count).step_by(CHUNK) {
-            part.count = CHUNK.min(element.count - first);
-            let read = parser.read_payload_for_element(&mut self.reader, &part, self.header);
-            // Elements are counted as lines, of binary data too.
-            let elements = read.map_err(|error| self.failed(&error, element, self.reader.line() - start))?;
-            for (element, number) in elements.into_iter().zip(first..) {
+        for part in Self::parts(element) {
+            for (number, element) in part.clone().zip(self.read_part(element, part)?) {
                 take(number, element)?;
             }
         }
         Ok(())
+    }
+
+    /// The numbers of all elements of a kind, as many at a time as are to be read.
+    pub(super) fn parts(element: &ElementDef) -> impl Iterator<Item = Range<usize>> + use<> {
+        let count = element.count;
+        (0..count).step_by(CHUNK).map(move |first| first..count.min(first + CHUNK))
+    }
+
+    /// The elements with these numbers, which are the next ones.
+    ///
+    /// # Errors
+    /// [`ParseError::Malformed`], naming the element and, in text, its line.
+    pub(super) fn read_part<E: PropertyAccess>(
+        &mut self,
+        element: &ElementDef,
+        part: Range<usize>,
+    ) -> Result<Vec<E>, ParseError> {
+        let element = ElementDef { count: part.len(), ..element.clone() };
+        let start = self.reader.line().max(1);
+        let read = Parser::new().read_payload_for_element(&mut self.reader, &element, self.header);
+        // Elements are counted as lines, of binary data too.
+        read.map_err(|error| self.failed(&error, &element, part.start + self.reader.line() - start))
     }
 
     fn failed(&self, error: &parser::ParseError, element: &ElementDef, number: usize) -> ParseError {

@@ -1,9 +1,12 @@
 //! The faces of a PLY file.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
 use ply_rs_bw::ply::{BeginList, ElementDef, PropertyAccess, PropertyAccessResult};
 
 use super::body::Body;
+use super::plain_triangle::PlainTriangle;
 use super::vertex::Vertices;
 use crate::io::ParseError;
 use crate::io::by_corner::by_corner;
@@ -27,7 +30,19 @@ impl Triangles {
         let mut triangles = Self::default();
         // A corner takes a byte at least.
         triangles.vertices.reserve_exact(element.count.min(body.rest().len() / 3));
-        body.read(element, |number, face: Face| triangles.push(number, &face, vertices))?;
+        let mut plain = PlainTriangle::definition(element);
+        for part in Body::parts(element) {
+            if let Some(definition) = &plain {
+                if triangles.push_plain(body, definition, part.clone(), vertices.positions.len()) {
+                    continue;
+                }
+                // Where one is no triangle more will follow, and the part is read once more.
+                plain = None;
+            }
+            for (number, face) in part.clone().zip(body.read_part(element, part)?) {
+                triangles.push(number, &face, vertices)?;
+            }
+        }
         if triangles.uvs.is_empty() {
             triangles.uvs = by_corner(&triangles.vertices, &vertices.uvs);
         }
@@ -35,6 +50,25 @@ impl Triangles {
             triangles.normals = by_corner(&triangles.vertices, &vertices.normals);
         }
         Ok(triangles)
+    }
+
+    /// Adds the faces of a part if all are triangles; otherwise leaves them to be read.
+    fn push_plain(&mut self, body: &mut Body<'_>, plain: &ElementDef, part: Range<usize>, vertices: usize) -> bool {
+        let start = self.vertices.len();
+        let mut ahead = body.copy();
+        let Ok(faces) = ahead.read_part(plain, part) else { return false };
+        for face in &faces {
+            let face: &PlainTriangle = face;
+            match face.corners(vertices) {
+                Some(corners) => self.vertices.push(corners),
+                None => {
+                    self.vertices.truncate(start);
+                    return false;
+                }
+            }
+        }
+        *body = ahead;
+        true
     }
 
     /// Adds a polygon. A list of its own counts where it is complete, the attribute of its vertices otherwise.
@@ -134,7 +168,7 @@ impl Face {
     }
 }
 
-fn is_indices(name: &str) -> bool {
+pub(super) fn is_indices(name: &str) -> bool {
     matches!(name, "vertex_indices" | "vertex_index")
 }
 
