@@ -1,5 +1,7 @@
 //! Triangle meshes.
 
+mod attributes;
+
 use std::sync::Arc;
 
 use bytemuck::cast_slice;
@@ -36,7 +38,7 @@ impl Mesh {
     /// seen from outside.
     #[wasm_bindgen(constructor)]
     pub fn new(positions: &[f64], triangles: &[u32], attributes: Option<MeshAttributes>) -> Result<Mesh, JsError> {
-        let attributes = options(attributes, &["joints", "weights"])?;
+        let given = options(attributes, &attributes::KEYS)?;
         let (points, rest) = positions.as_chunks::<3>();
         let (triangles, left) = triangles.as_chunks::<3>();
         if !rest.is_empty() || !left.is_empty() {
@@ -44,13 +46,7 @@ impl Mesh {
         }
         let mut mesh = TriMesh::new(points.iter().map(|point| DVec3::from(*point)).collect(), triangles.to_vec());
         mesh.check_valid().map_err(thrown)?;
-        let (joints, weights) = (attributes.joints(), attributes.weights());
-        if joints.is_some() || weights.is_some() {
-            let (joints, weights) = (joints.unwrap_or_default(), weights.unwrap_or_default());
-            let vertices = mesh.positions.len();
-            let per_vertex = joints.len().checked_div(vertices).unwrap_or(0);
-            mesh.vertex.set_skin_table(vertices, per_vertex, &joints, &weights).map_err(thrown)?;
-        }
+        attributes::set(&mut mesh, &given)?;
         Ok(Self { mesh: mesh.into() })
     }
 

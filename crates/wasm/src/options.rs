@@ -10,6 +10,18 @@ use crate::error::thrown;
 const TYPES: &str = r#"
 /** What a mesh carries. */
 export interface MeshAttributes {
+  /** Sets of texture coordinates: u, v of the three corners of each triangle, so that seams do not open the surface. */
+  uvs?: ArrayLike<number>[];
+  /** Shading normals: x, y, z, of any length, of the three corners of each triangle. They turn with the surface. */
+  normals?: ArrayLike<number>;
+  /** Linear red, green, blue and alpha of each vertex, 0 to 1. */
+  colors?: ArrayLike<number>;
+  /** The same of the three corners of each triangle, where they differ across seams. */
+  cornerColors?: ArrayLike<number>;
+  /** Names of the materials; an empty one stands for triangles without a material. */
+  materials?: string[];
+  /** For each triangle which of the materials it has; these two need each other. */
+  triangleMaterials?: ArrayLike<number>;
   /** As many joints for each vertex, row by row. */
   joints?: ArrayLike<number>;
   /** A weight for each of these, which is divided by the sum of its row; zero for places that are not used. */
@@ -60,6 +72,18 @@ export interface PreviewOptions {
 unsafe extern "C" {
     #[wasm_bindgen(extends = Object, typescript_type = "MeshAttributes")]
     pub type MeshAttributes;
+    #[wasm_bindgen(method, getter)]
+    pub fn uvs(this: &MeshAttributes) -> Option<Vec<JsValue>>;
+    #[wasm_bindgen(method, getter)]
+    pub fn normals(this: &MeshAttributes) -> Option<Vec<f64>>;
+    #[wasm_bindgen(method, getter)]
+    pub fn colors(this: &MeshAttributes) -> Option<Vec<f64>>;
+    #[wasm_bindgen(method, getter, js_name = cornerColors)]
+    pub fn corner_colors(this: &MeshAttributes) -> Option<Vec<f64>>;
+    #[wasm_bindgen(method, getter)]
+    pub fn materials(this: &MeshAttributes) -> Option<Vec<String>>;
+    #[wasm_bindgen(method, getter, js_name = triangleMaterials)]
+    pub fn triangle_materials(this: &MeshAttributes) -> Option<Vec<u32>>;
     #[wasm_bindgen(method, getter)]
     pub fn joints(this: &MeshAttributes) -> Option<Vec<u32>>;
     #[wasm_bindgen(method, getter)]
@@ -115,6 +139,16 @@ pub(crate) fn options<T: JsCast>(given: Option<T>, known: &[&str]) -> Result<T, 
 pub(crate) fn keys<T: DeserializeOwned>(place: &str, data: &JsValue) -> Result<T, JsError> {
     let text = JSON::stringify(data).ok().and_then(|text| text.as_string()).unwrap_or_default();
     serde_json::from_str(&text).map_err(|error| thrown(format!("{place}: {error}")))
+}
+
+/// A number of things, or as many as `usual`.
+pub(crate) fn count(name: &str, given: Option<f64>, usual: usize) -> Result<usize, JsError> {
+    match given {
+        None => Ok(usual),
+        // What is more than memory has addresses for is as good as no limit.
+        Some(count) if count >= 0.0 && count.fract() == 0.0 => Ok(count as usize),
+        Some(other) => Err(thrown(format!("{name} is a whole number, 0 or more, not {other}"))),
+    }
 }
 
 /// Just as many numbers as are wanted.

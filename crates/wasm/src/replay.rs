@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use bytemuck::cast_slice_mut;
+use glam::DVec3;
 use isochore_mesh::Silent;
-use isochore_sculpt::{Meshes, Recipe as RecipeData, Report, Source, recipe::Format, replay};
+use isochore_sculpt::{Meshes, Recipe as RecipeData, Report, Source, recipe::Format, replay, replay_points};
 use wasm_bindgen::prelude::*;
 
 use crate::{error::thrown, mesh::Mesh};
@@ -53,6 +55,21 @@ impl Recipe {
         let report = Report::new(&self.recipe, source, &replay, &replay.deformed.mesh, &Silent).map_err(thrown)?;
         let report = serde_json::to_string(&report).map_err(thrown)?;
         Ok(Replay { mesh: Mesh { mesh: replay.deformed.mesh.into() }, report })
+    }
+
+    /// Carries points along the strokes, in place: x, y, z of each, in world coordinates, model units. Points have no surface and no
+    /// volume: there is no refinement and no lock, and stamps are refused. The target need not be given, unless a mask has weights for
+    /// its vertices. Returns what of the recipe does not apply to points.
+    #[wasm_bindgen(js_name = runPoints)]
+    pub fn run_points(&self, points: &mut [f64]) -> Result<Vec<String>, JsError> {
+        if let Some(bad) = points.iter().position(|number| !number.is_finite()) {
+            return Err(thrown(format!("points: number {} of point {} is not finite", bad % 3, bad / 3)));
+        }
+        let (rows, []) = points.as_chunks_mut::<3>() else { return Err(thrown("points have three numbers each")) };
+        let rows: &mut [DVec3] = cast_slice_mut(rows);
+        let carried = replay_points(&self.recipe, &self.meshes, rows, &Silent).map_err(thrown)?;
+        rows.copy_from_slice(&carried.points);
+        Ok(carried.warnings)
     }
 }
 

@@ -18,7 +18,7 @@ use receipt::{History, MoveReceipt, StrokeReceipt};
 use crate::{
     error::thrown,
     mesh::Mesh,
-    options::{SessionOptions, StrokeOptions, keys, numbers, options},
+    options::{SessionOptions, StrokeOptions, count, keys, numbers, options},
     tool::Tool,
 };
 
@@ -47,7 +47,7 @@ impl Session {
         let options = self::options(options, &known)?;
         let mut chosen = session::SessionOptions::default();
         chosen.step = options.step().unwrap_or(chosen.step);
-        chosen.undo_bytes = options.undo_bytes().map_or(chosen.undo_bytes, |bytes| bytes as usize);
+        chosen.undo_bytes = count("undoBytes", options.undo_bytes(), chosen.undo_bytes)?;
         chosen.lock = options.lock().unwrap_or(chosen.lock);
         chosen.normals = match options.normals().as_deref() {
             None | Some("area") => NormalWeights::Area,
@@ -83,7 +83,7 @@ impl Session {
         }
         let refinement = InteractiveRefinement {
             longest: options.longest_edge(),
-            max_triangles: options.max_triangles().map_or(usual.max_triangles, |most| most as usize),
+            max_triangles: count("maxTriangles", options.max_triangles(), usual.max_triangles)?,
             keep: balls.iter().map(|&[x, y, z, radius]| ([x, y, z].into(), radius)).collect(),
             ..usual
         };

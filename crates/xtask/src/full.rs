@@ -3,9 +3,10 @@
 use std::process::Command;
 
 use crate::{
+    browser,
     environment::{install, interpreter},
     sanitizer,
-    shell::{TaskResult, cargo, run, workspace},
+    shell::{TaskResult, run, workspace},
 };
 
 /// Blender as a Python module, at the last version for this Python.
@@ -14,19 +15,7 @@ const BLENDER: [&str; 2] = ["bpy==5.0.1", "pytest==9.2.0"];
 /// Runs tests under the sanitizer, those in the browser and those of the Blender add-on.
 pub(crate) fn run_all() -> TaskResult {
     sanitizer::run_tests()?;
-    // The task itself is compiled with what makes bindings, which nothing else needs.
-    run(&mut cargo(&[
-        "run",
-        "--release",
-        "--locked",
-        "--quiet",
-        "-p",
-        "xtask",
-        "--features",
-        "browser",
-        "--",
-        "browser",
-    ]))?;
+    browser::test_pages()?;
     let python = interpreter("blender", &BLENDER)?;
     let source = workspace().display().to_string();
     install(&python, &["--force-reinstall", "--no-deps", &source])?;

@@ -5,6 +5,7 @@
 #[cfg(test)]
 mod arrows;
 mod bench;
+mod browser;
 mod capi;
 mod data;
 mod debian;
@@ -18,8 +19,6 @@ mod sanitizer;
 mod shell;
 mod size;
 mod test;
-#[cfg(feature = "browser")]
-mod wasm;
 
 use std::process::ExitCode;
 
@@ -44,12 +43,12 @@ const TASKS: &[Task] = &[
         bench::measure_all,
     ),
     ("capi", "install the library for C with its header under a prefix, by default target/capi", capi::install),
+    ("browser", "build the package for browsers in a folder, by default target/wasm/site/pkg", browser::build),
     ("python", "install the Python package into the target folder and run its tests", python::test_package),
     ("instructions", "count the instructions of the hot loops anew, which a test compares", instructions::count_all),
     ("full", "what is too heavy for every run: sanitizer, browser and Blender", full::run_all),
     ("sanitizer", "run the tests around unsafe code under AddressSanitizer", sanitizer::run_tests),
-    #[cfg(feature = "browser")]
-    ("browser", "build the package for browsers and run its pages in Chromium", wasm::test_in_browser),
+    ("pages", "build the package for browsers and run its tests and examples in Chromium", browser::test_pages),
     ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
     ("gallery", "run all recipes and examples of the figures, and show them in gallery/gallery.md", gallery::draw_all),
 ];

@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 use super::{Session, pose};
 use crate::{
     error::thrown,
-    options::{PreviewOptions, numbers, options},
+    options::{PreviewOptions, count, numbers, options},
     tool::Tool,
 };
 
@@ -83,7 +83,7 @@ impl Session {
     ) -> Result<Preview, JsError> {
         let options = self::options(options, &["perSide", "startRotate", "endRotate"])?;
         let (start, end) = (pose(start, options.start_rotate())?, pose(end, options.end_rotate())?);
-        let per_side = options.per_side().map_or(PER_SIDE, |count| count as usize);
+        let per_side = count("perSide", options.per_side(), PER_SIDE)?;
         let arrows = self.session.preview(&tool.tool, &start, &end, per_side).map_err(thrown)?;
         Ok(Preview { arrows })
     }

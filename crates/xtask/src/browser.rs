@@ -1,4 +1,7 @@
-//! The module for browsers: compiled, bound and tried in a browser without a window.
+//! The package for browsers: built, and tried in a browser without a window.
+
+#[cfg(feature = "browser")]
+mod package;
 
 use std::{
     fs,
@@ -6,49 +9,39 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-use wasm_bindgen_cli_support::Bindgen;
-
 use crate::{
     debian,
     shell::{TaskResult, cargo, run, target, workspace},
 };
 
-const TARGET: &str = "wasm32-unknown-unknown";
-
-/// Debian's compiler for the target, where rustup has none to give, and what else is needed here.
-const DEBIAN_PACKAGES: [&str; 6] = ["rustc-web", "cargo-web", "rust-web-src", "rust-web-llvm", "lld-22", "chromium"];
-
-/// Bytes that the module may have. Larger, and a dependency that doubles it goes unnoticed; smaller leaves no room to grow.
-const MOST_BYTES: u64 = 6_000_000;
-
 /// The recipe that has to give the same bytes in the browser as natively, and the mesh that it names.
 const RECIPE: &str = "data/recipes/sphere.toml";
 const MESH: &str = "data/planet.obj";
 
-/// Builds the package for browsers in `target/wasm/site/pkg` and runs the pages of its tests and examples.
-pub(crate) fn test_in_browser() -> TaskResult {
-    let site = target().join("wasm/site");
-    let package = site.join("pkg");
-    fs::create_dir_all(&package)?;
-    let module = compile()?;
-    Bindgen::new()
-        .input_path(module)
-        .out_name("isochore")
-        .web(true)?
-        .typescript(true)
-        .omit_default_module_path(false)
-        .generate(&package)?;
-    let size = fs::metadata(package.join("isochore_bg.wasm"))?.len();
-    eprintln!("the module has {size} bytes");
-    if size > MOST_BYTES {
-        return Err(format!("that is more than {MOST_BYTES}").into());
-    }
+/// Builds the package in the folder that the command line names, by default in `target/wasm/site/pkg`.
+pub(crate) fn build() -> TaskResult {
+    build_in(&std::env::args().nth(2).map_or_else(|| site().join("pkg"), PathBuf::from))
+}
 
+#[cfg(feature = "browser")]
+use package::build_in;
+
+/// Lets a task runner do it that was compiled with what makes bindings, which nothing else needs.
+#[cfg(not(feature = "browser"))]
+fn build_in(folder: &Path) -> TaskResult {
+    let runner = ["run", "--release", "--locked", "--quiet", "--package", "xtask", "--features", "browser"];
+    run(cargo(&runner).args(["--", "browser"]).arg(std::path::absolute(folder)?))
+}
+
+/// Builds the package and runs the pages of its tests and examples.
+pub(crate) fn test_pages() -> TaskResult {
+    let site = site();
+    build_in(&site.join("pkg"))?;
     run(cargo(&["run", "--release", "--locked", "--quiet", "--", "run", RECIPE, "--quiet", "--output"])
-        .arg(site.join("expected.obj"))
-        .current_dir(workspace()))?;
+        .arg(site.join("expected.obj")))?;
     fs::copy(workspace().join(RECIPE), site.join("recipe.toml"))?;
     fs::copy(workspace().join(MESH), site.join("planet.obj"))?;
+    debian::require("chromium", "chromium")?;
     let server = Server::start(&site)?;
     for page in ["tests/browser.html", "examples/sculpt.html"] {
         let source = workspace().join("crates/wasm").join(page);
@@ -59,37 +52,9 @@ pub(crate) fn test_in_browser() -> TaskResult {
     Ok(())
 }
 
-/// Compiles the module with vectors of 128 bits, by rustup's target where it is there or can be fetched, else by Debian's compiler.
-fn compile() -> TaskResult<PathBuf> {
-    let folder = target().join("wasm/build");
-    let package = ["build", "--release", "--package", "isochore-wasm", "--target", TARGET, "--target-dir"];
-    let flags = ("RUSTFLAGS", "-Ctarget-feature=+simd128");
-    if has_rustup_target() {
-        run(cargo(&package).arg(&folder).env(flags.0, flags.1))?;
-    } else {
-        install_from_debian()?;
-        let mut debian = Command::new("/usr/bin/cargo");
-        debian.args(package).arg(&folder).arg("-Zbuild-std=std,panic_abort").current_dir(workspace());
-        // The standard library is compiled along, which takes flags that a stable compiler has locked.
-        debian.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1").env("CARGO_PROFILE_RELEASE_PANIC", "abort");
-        run(debian.env(flags.0, flags.1).env_remove("RUSTUP_TOOLCHAIN"))?;
-    }
-    Ok(folder.join(TARGET).join("release/isochore_wasm.wasm"))
-}
-
-fn has_rustup_target() -> bool {
-    let has = || {
-        let output = Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output();
-        output.is_ok_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).exists())
-    };
-    has() || (Command::new("rustup").args(["target", "add", TARGET]).output().is_ok() && has())
-}
-
-fn install_from_debian() -> TaskResult {
-    if ["lld-22", "cargo", "chromium"].iter().all(|name| Path::new("/usr/bin").join(name).exists()) {
-        return Ok(());
-    }
-    debian::install(&DEBIAN_PACKAGES)
+/// What the pages are served from.
+fn site() -> PathBuf {
+    target().join("wasm/site")
 }
 
 /// Serves a folder to browsers of this machine.
