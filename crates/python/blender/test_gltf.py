@@ -11,12 +11,30 @@ import isochore
 import numpy as np
 import pytest
 from isochore_blender.surface import read
-from mathutils import Quaternion, Vector
+from mathutils import Matrix, Quaternion, Vector
+from mathutils.bvhtree import BVHTree
 
 PICTURES = pathlib.Path(__file__).resolve().parents[3] / "target" / "blender" / "pictures"
 """Before and after, at rest and posed, to be looked at."""
 
 SEGMENTS, RINGS = 32, 12
+
+SIZE = 200, 240
+"""Width and height of the pictures."""
+
+CAMERA = Matrix.Translation((1.2, -4.2, 1.6)) @ Vector((1.2, -4.2, 1.5)).to_track_quat("Z", "Y").to_matrix().to_4x4()
+
+TURN = Quaternion((1, 0, 0), math.radians(40))
+"""What the upper bone turns by."""
+
+COLORS = {
+    "yellow": (0.79, 0.6, 0.033),
+    "blue": (0.01, 0.073, 0.45),
+    "green": (0.2, 0.6, 0.25),
+    "red": (0.6, 0.01, 0.01),
+    "inside": (1, 0, 1),
+}
+"""Linear RGB of the texture, of the other material, and of the inside of the surface."""
 
 RECIPE = {
     "recipe": 1,
@@ -194,57 +212,143 @@ def imported(path):
 
 
 def posed(cylinder, armature):
-    """Positions in the world with the upper bone turned by 40 degrees about x."""
+    """Positions in the world with the upper bone turned by `TURN`."""
     bone = armature.pose.bones["upper"]
     bone.rotation_mode = "QUATERNION"
-    turn = Quaternion((1, 0, 0), math.radians(40))
     frame = bone.bone.matrix_local.to_quaternion()
-    bone.rotation_quaternion = frame.inverted() @ turn @ frame
+    bone.rotation_quaternion = frame.inverted() @ TURN @ frame
     bpy.context.view_layer.update()
     shown = cylinder.evaluated_get(bpy.context.evaluated_depsgraph_get())
     positions = read(shown.data.vertices, "co", 3, np.float32)
     return positions @ np.array(cylinder.matrix_world)[:3, :3].T + np.array(cylinder.matrix_world)[:3, 3]
 
 
-def test_blender_shows_and_poses_it(files):
-    before, after, result = files
-    for path in [before, after]:
-        cylinder, armature = imported(path)
-        rest = read(cylinder.data.vertices, "co", 3, np.float32)
-        world = np.array(cylinder.matrix_world)
-        rest = rest @ world[:3, :3].T + world[:3, 3]
-        render(path.stem)
-        moved = posed(cylinder, armature)
-        render(f"{path.stem}-posed")
-        # Linear blend skinning, from the weights that Blender read.
-        upper = cylinder.vertex_groups["upper"].index
-        share = [sum(g.weight for g in vertex.groups if g.group == upper) for vertex in cylinder.data.vertices]
-        turned = rest @ np.array(Quaternion((1, 0, 0), math.radians(40)).to_matrix()).T
-        expected = rest + np.array(share)[:, None] * (turned - rest)
-        assert moved == pytest.approx(expected, abs=1e-5)
-        # Weights were linear in the height at rest, and cut off. What the ball moved has kept those it had.
-        untouched = rest[:, 2] < -0.4
-        assert untouched.any() and np.array(share)[untouched] == pytest.approx(np.clip(0.5 + rest[untouched, 2], 0, 1), abs=0.02)
-        assert {slot.material.name for slot in cylinder.material_slots} == {"checked", "plain"}
-        assert [image.size[:] for image in bpy.data.images if image.name == "checks"] == [(256, 128)]
-    assert abs(result.report["volume_change"]) < 1e-6
+def blended(rest, share):
+    """Linear blend skinning: positions whose `share` turns with the upper bone."""
+    turned = rest @ np.array(TURN.to_matrix()).T
+    return rest + share[:, None] * (turned - rest)
+
+
+@pytest.mark.parametrize("which", ["before", "after"])
+def test_blender_poses_it(files, which):
+    cylinder, armature = imported(files[which == "after"])
+    rest = read(cylinder.data.vertices, "co", 3, np.float32)
+    world = np.array(cylinder.matrix_world)
+    rest = rest @ world[:3, :3].T + world[:3, 3]
+    # From the weights that Blender read.
+    upper = cylinder.vertex_groups["upper"].index
+    share = np.array([sum(g.weight for g in vertex.groups if g.group == upper) for vertex in cylinder.data.vertices])
+    assert posed(cylinder, armature) == pytest.approx(blended(rest, share), abs=1e-5)
+    # Weights were linear in the height at rest, and cut off. What the ball moved has kept those it had.
+    untouched = rest[:, 2] < -0.4
+    assert untouched.any() and share[untouched] == pytest.approx(np.clip(0.5 + rest[untouched, 2], 0, 1), abs=0.02)
+    assert {slot.material.name for slot in cylinder.material_slots} == {"checked", "plain"}
+    assert [image.size[:] for image in bpy.data.images if image.name == "checks"] == [(256, 128)]
+
+
+@pytest.mark.parametrize("is_posed", [False, True])
+@pytest.mark.parametrize("which", ["before", "after"])
+def test_blender_shows_it(files, which, is_posed):
+    path = files[which == "after"]
+    cylinder, armature = imported(path)
+    if is_posed:
+        posed(cylinder, armature)
+    picture = render(which + "-posed" * is_posed)
+    expected = traced(path, is_posed)
+    is_covered, seen = picture[..., 3] > 0.5, colors(picture)
+    # Not on the outline, nor on borders of fields and folds, where a pixel is a mixture.
+    framed = np.pad(expected, 1)
+    is_inside = np.ones(expected.shape, bool)
+    for up, across in [(0, 1), (1, 0), (1, 2), (2, 1)]:
+        is_inside &= expected == framed[up:, across:][: SIZE[1], : SIZE[0]]
+    # Colors have borders of 3 pixels in fields of 16 or more, and 40 such fields are in sight.
+    assert is_inside.mean() > 0.9 and is_inside[expected > 0].mean() > 0.6
+    assert np.array_equal(is_covered[is_inside], expected[is_inside] > 0), "holes, or what should not be there"
+    is_inside &= is_covered
+    assert (seen[is_inside] != expected[is_inside]).mean() < 1e-3
+    # Even light leaves no place black: what lies deepest still has a fiftieth of it.
+    assert picture[is_inside][:, :3].max(axis=1).min() > 0.02 ** (1 / 2.2)
+    share = dict(zip(COLORS, np.bincount(seen[is_inside], minlength=len(COLORS) + 1)[1:] / is_inside.sum(), strict=True))
+    assert share["yellow"] > 0.2 and share["blue"] > 0.2 and share["green"] > 0.05
+    # The one red field faces the camera at rest, and lies in the fold when bent.
+    assert share["red"] < 5e-3 if is_posed else share["red"] > 0.01
+    # The inside comes out only where bending drives the mouth that the ball has left through itself.
+    assert share["inside"] == 0 or (which == "after" and is_posed)
 
 
 def render(name):
-    """Traces a small picture of the scene."""
+    """Traces a small picture of the scene in even light, in which the inside of the surface is magenta: rows from below, RGBA."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     scene = bpy.context.scene
-    if scene.camera is None:
-        scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-        scene.camera.location = (1.2, -4.2, 1.6)
-        scene.camera.rotation_euler = Vector((1.2, -4.2, 1.5)).to_track_quat("Z", "Y").to_euler()
-        lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "SUN"))
-        lamp.data.energy, lamp.rotation_euler = 3, (0.9, 0.5, 0)
-        for thing in [scene.camera, lamp]:
-            scene.collection.objects.link(thing)
-        scene.world = bpy.data.worlds.new("world")
+    scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    scene.camera.matrix_world = CAMERA
+    scene.collection.objects.link(scene.camera)
+    scene.world = bpy.data.worlds.new("world")
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (1, 1, 1, 1)
+    for material in bpy.data.materials:
+        show_inside(material)
     scene.render.engine = "CYCLES"
     scene.cycles.samples, scene.cycles.use_denoising = 16, False
-    scene.render.resolution_x, scene.render.resolution_y = 400, 480
+    scene.render.film_transparent, scene.view_settings.view_transform = True, "Standard"
+    scene.render.resolution_x, scene.render.resolution_y = SIZE
     scene.render.filepath = str(PICTURES / f"{name}.png")
     bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(scene.render.filepath)
+    pixels = np.empty(4 * SIZE[0] * SIZE[1], np.float32)
+    image.pixels.foreach_get(pixels)
+    return pixels.reshape(SIZE[1], SIZE[0], 4)
+
+
+def show_inside(material):
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    output = next(node for node in nodes if node.type == "OUTPUT_MATERIAL")
+    inside, mix, side = (nodes.new(f"ShaderNode{kind}") for kind in ["Emission", "MixShader", "NewGeometry"])
+    inside.inputs["Color"].default_value = (1, 0, 1, 1)
+    links.new(side.outputs["Backfacing"], mix.inputs["Factor"])
+    links.new(output.inputs["Surface"].links[0].from_socket, mix.inputs[1])
+    links.new(inside.outputs["Emission"], mix.inputs[2])
+    links.new(mix.outputs["Shader"], output.inputs["Surface"])
+
+
+def colors(picture):
+    """By pixel, the number of the color of `COLORS` whose direction is nearest, from 1."""
+    light = picture[..., :3] ** 2.2
+    light /= np.maximum(np.linalg.norm(light, axis=2, keepdims=True), 1e-6)
+    directions = np.array(list(COLORS.values()))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    return np.argmax(light @ directions.T, axis=2) + 1
+
+
+def traced(path, is_posed):
+    """By pixel, the number of the color that the camera should see, from the arrays of the file alone; 0 beside the surface."""
+    mesh = isochore.Mesh.read(path)
+    # glTF has y up.
+    positions = mesh.positions @ np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
+    if is_posed:
+        document, _ = chunks(path)
+        names = [document["nodes"][joint]["name"] for joint in document["skins"][0]["joints"]]
+        joints, weights = mesh.skin
+        positions = blended(positions, (weights * (joints == names.index("upper"))).sum(axis=1))
+    tree = BVHTree.FromPolygons(positions.tolist(), mesh.triangles.tolist())
+    eye, (right, up, back) = CAMERA.translation, CAMERA.to_3x3().transposed()
+    # The camera of Blender has a focal length of 50 by a sensor of 36, over the longer side.
+    step = 36 / 50 / max(SIZE)
+    seen = np.zeros(SIZE[::-1], int)
+    for row, column in np.ndindex(*seen.shape):
+        ray = right * step * (column + 0.5 - SIZE[0] / 2) + up * step * (row + 0.5 - SIZE[1] / 2) - back
+        point, _, triangle, _ = tree.ray_cast(eye, ray)
+        if point is None:
+            continue
+        a, b, c = positions[mesh.triangles[triangle]]
+        if np.cross(b - a, c - a) @ ray > 0:
+            seen[row, column] = 5
+            continue
+        if mesh.materials[mesh.triangle_materials[triangle]] == "plain":
+            seen[row, column] = 3
+            continue
+        shares = np.linalg.lstsq(np.stack([b - a, c - a], axis=1), np.array(point) - a, rcond=None)[0]
+        u, v = np.array([1 - shares.sum(), *shares]) @ mesh.uvs[0][triangle]
+        # glTF counts rows of images from above.
+        across, up_rows = int(u * 16), int((1 - v) * 8)
+        seen[row, column] = 4 if (up_rows, across) == (5, 12) else 1 + (up_rows + across) % 2
+    return seen
