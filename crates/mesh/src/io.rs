@@ -29,7 +29,8 @@ mod stl;
 mod text;
 mod write_error;
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{Read, Write};
 use std::path::Path;
 
 pub use format::Format;
@@ -38,6 +39,7 @@ pub use read_error::{LineProblem, ParseError, ReadError};
 pub use split::SplitVertices;
 pub use write_error::WriteError;
 
+use crate::huge_pages::in_huge_pages;
 use crate::{CornerAttributes, TriMesh};
 
 /// Reads the mesh file at `path`, and the files beside it that it refers to.
@@ -51,7 +53,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<TriMesh, ReadError> {
     let path = path.as_ref();
     let format = Format::of_path(path).ok_or_else(|| ReadError::UnknownFormat { path: path.to_owned() })?;
     let failed = |source| ReadError::Io { path: path.to_owned(), source };
-    let bytes = std::fs::read(path).map_err(failed)?;
+    let bytes = read_file(path).map_err(failed)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut mesh = parse(format, &bytes, &|relative| std::fs::read(folder.join(relative)))
         .map_err(|source| ReadError::Parse { path: path.to_owned(), source: Box::new(source) })?;
@@ -60,6 +62,16 @@ pub fn read(path: impl AsRef<Path>) -> Result<TriMesh, ReadError> {
         mesh.assets.names.mesh = stem.to_string_lossy().into_owned();
     }
     Ok(mesh)
+}
+
+fn read_file(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut file = File::open(path)?;
+    let size = usize::try_from(file.metadata()?.len()).unwrap_or(usize::MAX);
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(size)?;
+    bytes = in_huge_pages(bytes);
+    file.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// Reads a mesh from memory, as [`read`] does from a file. References to other files are errors.

@@ -20,6 +20,7 @@ mod distance_field;
 mod edit_mesh;
 mod extremes;
 mod grid_mesh;
+mod huge_pages;
 pub mod io;
 mod journaled;
 mod measure;

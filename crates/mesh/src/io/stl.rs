@@ -11,6 +11,7 @@ use glam::{DVec3, Vec3};
 use super::text::{FLUSH_AT, at_line, flush, numbered_lines, read_numbers};
 use super::{LineProblem, ParseError};
 use crate::TriMesh;
+use crate::huge_pages::in_huge_pages;
 use crate::measure::triangle_normal;
 use crate::position_table::PositionTable;
 
@@ -80,7 +81,7 @@ fn parse_text(bytes: &[u8]) -> Result<TriMesh, ParseError> {
 fn welded<E>(triangles: impl Iterator<Item = Result<[DVec3; 3], E>>, count: usize) -> Result<TriMesh, E> {
     // A closed surface has half as many vertices as triangles, or little less.
     let mut table = PositionTable::with_capacity(count / 2);
-    let mut mesh = TriMesh::new(Vec::with_capacity(count / 2), Vec::with_capacity(count));
+    let mut mesh = TriMesh::new(in_huge_pages(Vec::with_capacity(count / 2)), in_huge_pages(Vec::with_capacity(count)));
     for corners in triangles {
         let [a, b, c] = corners?.map(|position| {
             let new = mesh.positions.len() as u32;

@@ -7,6 +7,7 @@ use ::gltf::json::accessor::ComponentType;
 use ::gltf::json::validation::Checked;
 
 use super::document::{Document, malformed};
+use crate::huge_pages::in_huge_pages;
 use crate::io::ParseError;
 
 /// Most elements of an accessor that has no bytes behind it. Larger, and a file of a few bytes could ask for all
@@ -46,7 +47,9 @@ impl Document<'_> {
             && let Some(bytes) = self.packed(index, 4 * N)?
         {
             let vectors = bytes.as_chunks().0.as_chunks::<N>().0;
-            return Ok(vectors.iter().map(|vector| make(vector.map(single))).collect());
+            let mut made = in_huge_pages(Vec::with_capacity(vectors.len()));
+            made.extend(vectors.iter().map(|vector| make(vector.map(single))));
+            return Ok(made);
         }
         self.elements(index, N, |bytes| {
             let size = component.size();
@@ -65,7 +68,9 @@ impl Document<'_> {
             && let Some(bytes) = self.packed(index, 4)?
         {
             let groups = bytes.as_chunks().0.as_chunks::<N>().0;
-            return Ok(groups.iter().map(|group| group.map(u32::from_le_bytes)).collect());
+            let mut indices = in_huge_pages(Vec::with_capacity(groups.len()));
+            indices.extend(groups.iter().map(|group| group.map(u32::from_le_bytes)));
+            return Ok(indices);
         }
         let numbers: Vec<u32> = self.elements(index, 1, |bytes| number(component, false, bytes) as u32)?;
         Ok(numbers.as_chunks().0.to_vec())

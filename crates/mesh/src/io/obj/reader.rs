@@ -10,6 +10,7 @@ use super::fault::check_lines;
 use super::lines::{Kept, Lines, split_vertex};
 use super::statement::Statements;
 use crate::TriMesh;
+use crate::huge_pages::in_huge_pages;
 use crate::io::ParseError;
 use crate::io::polygon::triangulate;
 use crate::io::text::push_index;
@@ -58,7 +59,8 @@ fn load(lines: &mut impl BufRead) -> Result<Vec<tobj::Mesh>, tobj::LoadError> {
 /// All positions in the order of the file.
 fn positions(bytes: &[u8], objects: &[tobj::Mesh], kept: &Kept) -> Result<Vec<DVec3>, tobj::LoadError> {
     let count = kept.counts[0];
-    let mut positions = vec![DVec3::NAN; count];
+    let mut positions = in_huge_pages(Vec::with_capacity(count));
+    positions.resize(count, DVec3::NAN);
     let mut corners = kept.corners.iter();
     for object in objects {
         let known = object.positions.as_chunks().0;
@@ -113,9 +115,9 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
     let has_normals = kept.runs.iter().any(|(kind, _)| kind.has_normals);
     let triangles = objects.iter().flat_map(sizes).map(|size| size - 2).sum();
 
-    let mut mesh = TriMesh { triangles: Vec::with_capacity(triangles), ..TriMesh::default() };
-    let mut uvs = Vec::with_capacity(if has_uvs { triangles } else { 0 });
-    mesh.corner.normals.reserve_exact(if has_normals { triangles } else { 0 });
+    let mut mesh = TriMesh::new(Vec::new(), in_huge_pages(Vec::with_capacity(triangles)));
+    let mut uvs = in_huge_pages(Vec::with_capacity(if has_uvs { triangles } else { 0 }));
+    mesh.corner.normals = in_huge_pages(Vec::with_capacity(if has_normals { triangles } else { 0 }));
     let mut polygon = Vec::new();
     let mut kinds = kept.runs.iter().flat_map(|&(kind, faces)| repeat_n(kind, faces));
     let mut vertices = &kept.corners[..];

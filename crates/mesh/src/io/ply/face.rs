@@ -8,6 +8,7 @@ use ply_rs_bw::ply::{BeginList, ElementDef, PropertyAccess, PropertyAccessResult
 use super::body::Body;
 use super::plain_triangle::PlainTriangle;
 use super::vertex::Vertices;
+use crate::huge_pages::in_huge_pages;
 use crate::io::ParseError;
 use crate::io::by_corner::by_corner;
 use crate::io::polygon::triangulate;
@@ -27,9 +28,9 @@ pub(super) struct Triangles {
 
 impl Triangles {
     pub(super) fn read(body: &mut Body<'_>, element: &ElementDef, vertices: &Vertices) -> Result<Self, ParseError> {
-        let mut triangles = Self::default();
         // A corner takes a byte at least.
-        triangles.vertices.reserve_exact(element.count.min(body.rest().len() / 3));
+        let most = element.count.min(body.rest().len() / 3);
+        let mut triangles = Self { vertices: in_huge_pages(Vec::with_capacity(most)), ..Self::default() };
         let mut plain = PlainTriangle::definition(element);
         for part in Body::parts(element) {
             if let Some(definition) = &plain {

@@ -6,6 +6,7 @@ use ply_rs_bw::ply::{ElementDef, Header, PropertyAccess, PropertyAccessResult};
 
 use super::body::{Body, problem};
 use super::header::{coordinates, has_numbers};
+use crate::huge_pages::in_huge_pages;
 use crate::io::ParseError;
 
 /// Vertices by attribute; an attribute that the file does not have is empty.
@@ -25,9 +26,9 @@ impl Vertices {
         let reds = ["red", "r", "diffuse_red"];
         let has_colors =
             has_numbers(element, &[&reds, &["green", "g", "diffuse_green"], &["blue", "b", "diffuse_blue"]]);
-        let mut vertices = Self::default();
         // A coordinate takes a byte at least.
-        vertices.positions.reserve_exact(element.count.min(body.rest().len() / 3));
+        let most = element.count.min(body.rest().len() / 3);
+        let mut vertices = Self { positions: in_huge_pages(Vec::with_capacity(most)), ..Self::default() };
         body.read(element, |_, vertex: Vertex| {
             vertices.positions.push(vertex.position);
             if has_normals {
