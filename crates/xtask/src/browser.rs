@@ -41,7 +41,7 @@ pub(crate) fn test_pages() -> TaskResult {
         .arg(site.join("expected.obj")))?;
     fs::copy(workspace().join(RECIPE), site.join("recipe.toml"))?;
     fs::copy(workspace().join(MESH), site.join("planet.obj"))?;
-    debian::require("chromium", "chromium")?;
+    debian::require("chromium", &["chromium"])?;
     let server = Server::start(&site)?;
     for page in ["tests/browser.html", "examples/sculpt.html"] {
         let source = workspace().join("crates/wasm").join(page);

@@ -68,7 +68,7 @@ pub(crate) fn test_programs() -> TaskResult {
             return Err(format!("{source} by {compiler} writes other bytes than the command").into());
         }
         if is_test {
-            debian::require("valgrind", "valgrind")?;
+            debian::require("valgrind", &["valgrind"])?;
             let mut memory_check = Command::new("valgrind");
             memory_check.args([
                 "--quiet",

@@ -17,10 +17,10 @@ pub(crate) fn install(packages: &[&str]) -> TaskResult {
     install().map_err(|error| format!("{error}; run: sudo apt-get install --yes {names}").into())
 }
 
-/// Installs the package that brings `program`, unless it is there.
-pub(crate) fn require(program: &str, package: &str) -> TaskResult {
+/// Installs the packages that bring `program` and what it needs, unless it is there.
+pub(crate) fn require(program: &str, packages: &[&str]) -> TaskResult {
     match Command::new(program).arg("--version").output() {
         Ok(_) => Ok(()),
-        Err(_) => install(&[package]),
+        Err(_) => install(packages),
     }
 }

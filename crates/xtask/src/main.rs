@@ -2,11 +2,13 @@
 
 #![allow(clippy::print_stderr, reason = "tasks speak to whoever started them")]
 
+mod arm;
 #[cfg(test)]
 mod arrows;
 mod bench;
 mod browser;
 mod capi;
+mod cross;
 mod data;
 mod debian;
 mod environment;
@@ -46,8 +48,9 @@ const TASKS: &[Task] = &[
     ("browser", "build the package for browsers in a folder, by default target/wasm/site/pkg", browser::build),
     ("python", "install the Python package into the target folder and run its tests", python::test_package),
     ("instructions", "count the instructions of the hot loops anew, which a test compares", instructions::count_all),
-    ("full", "what is too heavy for every run: sanitizer, browser and Blender", full::run_all),
+    ("full", "what is too heavy for every run: sanitizer, ARM, browser and Blender", full::run_all),
     ("sanitizer", "run the tests around unsafe code under AddressSanitizer", sanitizer::run_tests),
+    ("arm", "run recipes by the command for ARM, emulated, and compare the bytes", arm::compare_bytes),
     ("pages", "build the package for browsers and run its tests and examples in Chromium", browser::test_pages),
     ("data", "make the meshes of the folder `data` and its README anew", data::write_all),
     ("gallery", "run all recipes and examples of the figures, and show them in gallery/gallery.md", gallery::draw_all),

@@ -12,7 +12,7 @@ pub(crate) fn run_all() -> TaskResult {
     run(&mut cargo(&["fmt", "--all", "--check"]))?;
     run(&mut cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--quiet", "--", "--deny", "warnings"]))?;
     // One of the tests counts instructions with it.
-    debian::require("valgrind", "valgrind")?;
+    debian::require("valgrind", &["valgrind"])?;
     // The only features that are on by default are peers of the benchmarks.
     run(&mut cargo(&["test", "--workspace", "--no-default-features", "--locked", "--quiet"]))?;
     oracle::run_judges()?;

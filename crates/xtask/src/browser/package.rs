@@ -1,24 +1,14 @@
 //! The package for browsers: the module compiled, what binds it to JavaScript, and what describes both.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::Command,
-};
+use std::{fs, path::Path};
 
 use serde_json::json;
 use wasm_bindgen_cli_support::Bindgen;
 use wasmparser::{Parser, Payload};
 
-use crate::{
-    debian,
-    shell::{TaskResult, cargo, run, target, workspace},
-};
+use crate::{cross, shell::TaskResult};
 
 const TARGET: &str = "wasm32-unknown-unknown";
-
-/// Debian's compiler for the target, where rustup has none to give.
-const DEBIAN_PACKAGES: [&str; 5] = ["rustc-web", "cargo-web", "rust-web-src", "rust-web-llvm", "lld-22"];
 
 /// Bytes that the module may have. Larger, and a dependency that doubles it goes unnoticed; smaller leaves no room to grow.
 const MOST_BYTES: usize = 6_000_000;
@@ -29,9 +19,9 @@ const VECTOR_PREFIX: u8 = 0xfd;
 /// Builds the package in a folder, and fails where the module is too large or works on no vectors.
 pub(super) fn build_in(folder: &Path) -> TaskResult {
     fs::create_dir_all(folder)?;
-    let module = compile()?;
+    let built = cross::build("isochore-wasm", TARGET, ("RUSTFLAGS", "-Ctarget-feature=+simd128"))?;
     Bindgen::new()
-        .input_path(module)
+        .input_path(built.join("isochore_wasm.wasm"))
         .out_name("isochore")
         .web(true)?
         .typescript(true)
@@ -73,39 +63,6 @@ fn vector_instructions(module: &[u8]) -> TaskResult<usize> {
         }
     }
     Ok(count)
-}
-
-/// Compiles the module with vectors of 128 bits, by rustup's target where it is there or can be fetched, else by Debian's compiler.
-fn compile() -> TaskResult<PathBuf> {
-    let folder = target().join("wasm/build");
-    let package = ["build", "--release", "--package", "isochore-wasm", "--target", TARGET, "--target-dir"];
-    let flags = ("RUSTFLAGS", "-Ctarget-feature=+simd128");
-    if has_rustup_target() {
-        run(cargo(&package).arg(&folder).env(flags.0, flags.1))?;
-    } else {
-        install_from_debian()?;
-        let mut debian = Command::new("/usr/bin/cargo");
-        debian.args(package).arg(&folder).arg("-Zbuild-std=std,panic_abort").current_dir(workspace());
-        // The standard library is compiled along, which takes flags that a stable compiler has locked.
-        debian.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1").env("CARGO_PROFILE_RELEASE_PANIC", "abort");
-        run(debian.env(flags.0, flags.1).env_remove("RUSTUP_TOOLCHAIN"))?;
-    }
-    Ok(folder.join(TARGET).join("release/isochore_wasm.wasm"))
-}
-
-fn has_rustup_target() -> bool {
-    let has = || {
-        let output = Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output();
-        output.is_ok_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).exists())
-    };
-    has() || (Command::new("rustup").args(["target", "add", TARGET]).output().is_ok() && has())
-}
-
-fn install_from_debian() -> TaskResult {
-    if ["lld-22", "cargo"].iter().all(|name| Path::new("/usr/bin").join(name).exists()) {
-        return Ok(());
-    }
-    debian::install(&DEBIAN_PACKAGES)
 }
 
 #[cfg(test)]
