@@ -33,7 +33,6 @@ mod pseudo_normals;
 mod self_intersection;
 mod shapes;
 mod surface_tree;
-mod table;
 mod topology;
 mod tri_mesh;
 mod winding_number;

@@ -10,6 +10,7 @@ use obvhs::ploc::{PlocBuilder, SortPrecision};
 use rayon::prelude::*;
 
 use super::Node;
+use crate::huge_pages::in_huge_pages;
 use crate::morton_order::{Placed, along_morton_curve};
 
 /// Neighbors along the curve to each side that a cluster is compared with. Larger: slower. Smaller: boxes overlap more.
@@ -113,8 +114,8 @@ fn in_preorder(tree: &[Bvh2Node], placed: &[Placed]) -> (Vec<Node>, Vec<u32>) {
         let aabb = tree[source as usize].aabb();
         Node { min: aabb.min.to_array(), max: aabb.max.to_array(), first: 0, count: below[source as usize] }
     };
-    let mut order = Vec::with_capacity(placed.len());
-    let mut nodes = Vec::with_capacity(tree.len());
+    let mut order = in_huge_pages(Vec::with_capacity(placed.len()));
+    let mut nodes = in_huge_pages(Vec::with_capacity(tree.len()));
     nodes.push(node(0));
     let mut pending = vec![(0, 0)];
     let mut leaf = Vec::new();

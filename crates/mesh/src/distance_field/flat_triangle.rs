@@ -3,8 +3,7 @@ use super::vector::{Lanes3, at, cross, direction, dot, minus, perpendicular, sel
 use crate::extremes::{greater, lesser};
 
 /// A triangle in its own plane: corners at (0, 0), (`base`, 0) and `left_length` · `left`.
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Zeroable)]
 pub(super) struct FlatTriangle {
     origin: [f32; 3],
     along: [f32; 3],

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use super::Grid;
 use super::real::Real;
 use crate::extremes::{greater, lesser};
+use crate::huge_pages::in_huge_pages;
 use crate::{Cancelled, Monitor};
 
 /// Covers the rounding of the arithmetic in `f64`.
@@ -38,7 +39,7 @@ pub(super) fn lipschitz(grid: &Grid, coefficients: &[f32], monitor: &dyn Monitor
         return Ok(0.0);
     }
     let layer = nx * ny;
-    let mut bounds = vec![0.0; layer * (nz - 3)];
+    let mut bounds = in_huge_pages(vec![0.0; layer * (nz - 3)]);
     // The greatest found so far, as bits, which of positive numbers have the order of the numbers. What threads find when decides
     // what they skip, but nothing that they skip is greater than what is found in the end.
     let known = AtomicU64::new(0);

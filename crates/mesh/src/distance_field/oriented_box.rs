@@ -13,8 +13,8 @@ use crate::bvh::{LEAF_TRIANGLES, Node};
 use crate::extremes::greater;
 
 /// A box in any orientation, ready for distances to a packet of points.
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C, align(64))]
+#[derive(Debug, Clone, Copy, bytemuck::Zeroable)]
+#[repr(align(64))]
 pub(super) struct OrientedBox {
     axes: [[f32; 3]; 3],
     /// Coordinates of the center along the axes.

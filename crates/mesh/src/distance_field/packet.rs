@@ -84,7 +84,7 @@ impl PacketSearch {
     /// Finds the nearest triangle for each lane. `guesses` are triangles likely to be near; they save time. `stack` is scratch.
     #[inline(always)]
     pub(super) fn search(&self, packet: &mut Packet, guesses: &[u32], stack: &mut Vec<Pending>) {
-        let (boxes, triangles) = (&self.prepared.boxes[..], &self.prepared.triangles[..]);
+        let Preparation { boxes, triangles, .. } = &self.prepared;
         for &slot in guesses {
             triangles[slot as usize].update(packet, slot);
         }

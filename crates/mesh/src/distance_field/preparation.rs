@@ -7,13 +7,13 @@ use super::grain::{GRAIN, Grain, Place, prepare};
 use super::oriented_box::{COORDINATE_ROUNDING, OrientedBox, Shell};
 use crate::Bvh;
 use crate::bvh::Node;
-use crate::table::Table;
+use crate::huge_pages::in_huge_pages;
 
 /// Boxes and triangles in the order of the hierarchy.
 #[derive(Debug)]
 pub(super) struct Preparation {
-    pub(super) boxes: Table<OrientedBox>,
-    pub(super) triangles: Table<FlatTriangle>,
+    pub(super) boxes: Vec<OrientedBox>,
+    pub(super) triangles: Vec<FlatTriangle>,
     /// Square of the length of the longest edge in the unit frame.
     pub(super) longest2: f64,
 }
@@ -45,8 +45,8 @@ impl Preparation {
     pub(super) fn new(bvh: &Bvh, largest: f64) -> Self {
         let nodes = bvh.nodes();
         let rounding = COORDINATE_ROUNDING * (largest + 1.0);
-        let mut triangles = Table::zeroed(bvh.triangles().len());
-        let mut boxes = Table::zeroed(nodes.len());
+        let mut triangles: Vec<FlatTriangle> = in_huge_pages(bytemuck::zeroed_vec(bvh.triangles().len()));
+        let mut boxes: Vec<OrientedBox> = in_huge_pages(bytemuck::zeroed_vec(nodes.len()));
 
         let mut roots = Vec::new();
         fold(nodes, 0, TASK, |root, _: Option<[(); 2]>| {

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::Grid;
 use super::exact_distance::{Points, exact_squared_distances};
 use super::packet::{LANES, NOTHING, PACKET, Packet, PacketSearch};
+use crate::huge_pages::in_huge_pages;
 use crate::{Bvh, Cancelled, Monitor};
 
 /// Distances without sign, and a bound on their error, both in model units.
@@ -23,7 +24,7 @@ pub(super) fn unsigned(
 ) -> Result<(Vec<f32>, f64), Cancelled> {
     monitor.check("distance", 0.0)?;
     let [nx, ny, nz] = grid.dims;
-    let mut samples = vec![0.0; nx * ny * nz];
+    let mut samples = in_huge_pages(vec![0.0; nx * ny * nz]);
     let slab = nx * ny * PACKET[2];
     let slabs = nz.div_ceil(PACKET[2]);
     let done = AtomicUsize::new(0);

@@ -7,6 +7,7 @@
 use rayon::prelude::*;
 
 use super::real::Real;
+use crate::huge_pages::in_huge_pages;
 use crate::{Cancelled, Monitor};
 
 /// The pole of the cubic spline filter, √3 − 2.
@@ -25,7 +26,7 @@ const ROWS: usize = 8;
 pub(super) fn coefficients(samples: &[f32], dims: [usize; 3], monitor: &dyn Monitor) -> Result<Vec<f32>, Cancelled> {
     let [nx, ny, nz] = dims;
     let layer = nx * ny;
-    let mut work = vec![0.0; samples.len()];
+    let mut work = in_huge_pages(vec![0.0; samples.len()]);
     work.par_chunks_mut(layer).zip(samples.par_chunks(layer)).try_for_each(|(work, samples)| {
         let mut rows = vec![0.0; ROWS * nx];
         for (work, samples) in work.chunks_mut(ROWS * nx).zip(samples.chunks(ROWS * nx)) {
@@ -42,7 +43,7 @@ pub(super) fn coefficients(samples: &[f32], dims: [usize; 3], monitor: &dyn Moni
     })?;
     monitor.check("spline", 0.25)?;
     // Along z the lines cross all layers: each task takes those of one row of x, copied out and back.
-    let mut coefficients = vec![0.0; samples.len()];
+    let mut coefficients = in_huge_pages(vec![0.0; samples.len()]);
     let mut rows: Vec<Vec<&mut [f32]>> = (0..ny).map(|_| Vec::with_capacity(nz)).collect();
     coefficients.chunks_mut(nx).enumerate().for_each(|(row, out)| rows[row % ny].push(out));
     rows.into_par_iter().enumerate().for_each_init(Vec::new, |lines, (j, rows)| {
