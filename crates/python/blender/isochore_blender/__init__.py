@@ -8,14 +8,16 @@ import pathlib
 import tomllib
 
 import bpy
-import numpy as np
 
 import isochore
 
-from .surface import Surface
+from .deformation import Deformation
 
-TARGET = "the active mesh"
-"""What the target is called while the recipe runs; no file of a recipe has this name."""
+PROBLEMS = isochore.Error, OSError, ValueError
+"""What is told to the user."""
+
+INTERVAL = 0.1
+"""Seconds from one look at the work to the next."""
 
 
 class OBJECT_OT_isochore_deform(bpy.types.Operator):
@@ -33,18 +35,59 @@ class OBJECT_OT_isochore_deform(bpy.types.Operator):
     def poll(cls, context):
         return context.object is not None and context.object.type == "MESH" and context.mode == "OBJECT"
 
+    deformation = None
+    is_interactive = False
+    """Whether to work beside the window, which shows how far it is and where Esc stops it; scripts wait for the result."""
+
     def invoke(self, context, event):
+        self.is_interactive = True
         if self.text:
             return self.execute(context)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context):
+        manager = context.window_manager
         try:
-            report, lost = deform(context.object, self._recipe())
-        except (isochore.Error, OSError, ValueError) as problem:
-            self.report({"ERROR"}, str(problem))
+            self.deformation = Deformation(context.object, self._recipe())
+        except PROBLEMS as problem:
+            return self._fail(problem)
+        manager.progress_begin(0, 1)
+        if self.is_interactive:
+            self.deformation.start()
+            self.timer = manager.event_timer_add(INTERVAL, window=context.window)
+            manager.modal_handler_add(self)
+            return {"RUNNING_MODAL"}
+        self.deformation.run(lambda stage, done: manager.progress_update(done))
+        return self._finish(context)
+
+    def modal(self, context, event):
+        # All other events end here, so that nobody edits the mesh meanwhile.
+        if event.type == "ESC":
+            self.deformation.stop()
+        elif event.type == "TIMER" and self.deformation.is_done():
+            context.window_manager.event_timer_remove(self.timer)
+            context.workspace.status_text_set(None)
+            return self._finish(context)
+        else:
+            stage, done = self.deformation.progress
+            context.window_manager.progress_update(done)
+            context.workspace.status_text_set(f"{stage} {done:.0%}    Esc: stop")
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        # Blender closes the file, and calls this while the file is chosen, too.
+        if self.deformation:
+            self.deformation.stop()
+
+    def _finish(self, context):
+        context.window_manager.progress_end()
+        try:
+            report, lost = self.deformation.finish()
+        except isochore.Cancelled:
             return {"CANCELLED"}
+        except PROBLEMS as problem:
+            return self._fail(problem)
         missed = [name for name, held in report["promises"].items() if not held]
         if missed:
             self.report({"WARNING"}, "promises missed: " + ", ".join(missed))
@@ -54,6 +97,10 @@ class OBJECT_OT_isochore_deform(bpy.types.Operator):
         self.report({"INFO"}, f"{report['after']['triangles']} triangles, {change}")
         return {"FINISHED"}
 
+    def _fail(self, problem):
+        self.report({"ERROR"}, str(problem))
+        return {"CANCELLED"}
+
     def _recipe(self):
         if not self.text:
             return pathlib.Path(bpy.path.abspath(self.filepath))
@@ -61,34 +108,6 @@ class OBJECT_OT_isochore_deform(bpy.types.Operator):
             raise ValueError(f"there is no text block `{self.text}`")
         text = bpy.data.texts[self.text].as_string()
         return json.loads(text) if text.lstrip().startswith("{") else tomllib.loads(text)
-
-
-def deform(target, recipe):
-    """Deforms the mesh of the object `target`; the report, and the names of attributes that were lost.
-
-    `recipe` is a path, or keys. Their lengths are those of the world. The object's own transform stays as it is.
-    """
-    if target.data.shape_keys:
-        raise ValueError("a mesh with shape keys cannot be refined: apply or remove them first")
-    to_world = np.array(target.matrix_world)
-    if np.linalg.det(to_world[:3, :3]) == 0:
-        raise ValueError("the object is scaled to nothing along some axis")
-    surface = Surface(target, mirrored=np.linalg.det(to_world[:3, :3]) < 0)
-    world = surface.positions @ to_world[:3, :3].T + to_world[:3, 3]
-    normals = surface.normals()
-    if normals is not None:
-        normals = normals @ np.linalg.inv(to_world[:3, :3])
-    sent = isochore.Mesh(world, surface.triangles, uvs=surface.uvs(), normals=normals)
-    mesh, _, report = isochore.run(recipe, meshes={TARGET: sent}, settings={"target.mesh": TARGET})
-    local = (mesh.positions - to_world[:3, 3]) @ np.linalg.inv(to_world[:3, :3]).T
-    # What did not move keeps its bits, which the way to the world and back would not.
-    still = np.all(mesh.positions[: len(world)] == world, axis=1)
-    local[: len(world)][still] = surface.positions[still]
-    is_same = np.array_equal(mesh.triangles, surface.triangles)
-    lost = surface.move(local) if is_same else surface.replace(local, mesh.triangles, mesh.uvs)
-    if normals is not None:
-        surface.set_normals(mesh.normals @ to_world[:3, :3])
-    return report, lost
 
 
 def draw_menu(menu, context):
