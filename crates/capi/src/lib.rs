@@ -13,12 +13,12 @@ mod tool;
 pub use error::{Status, isochore_last_error};
 pub use memory::isochore_text_free;
 pub use mesh::{
-    Mesh, isochore_mesh_free, isochore_mesh_material_name, isochore_mesh_new, isochore_mesh_normals,
-    isochore_mesh_positions, isochore_mesh_read, isochore_mesh_set_materials, isochore_mesh_set_normals,
-    isochore_mesh_set_skin, isochore_mesh_set_uvs, isochore_mesh_set_vertex_colors, isochore_mesh_skin,
-    isochore_mesh_skin_influences, isochore_mesh_triangle_count, isochore_mesh_triangle_materials,
-    isochore_mesh_triangles, isochore_mesh_uvs, isochore_mesh_vertex_colors, isochore_mesh_vertex_count,
-    isochore_mesh_volume, isochore_mesh_write,
+    Mesh, isochore_mesh_corner_colors, isochore_mesh_free, isochore_mesh_material_name, isochore_mesh_new,
+    isochore_mesh_normals, isochore_mesh_positions, isochore_mesh_read, isochore_mesh_set_corner_colors,
+    isochore_mesh_set_materials, isochore_mesh_set_normals, isochore_mesh_set_skin, isochore_mesh_set_uvs,
+    isochore_mesh_set_vertex_colors, isochore_mesh_skin, isochore_mesh_skin_influences, isochore_mesh_triangle_count,
+    isochore_mesh_triangle_materials, isochore_mesh_triangles, isochore_mesh_uvs, isochore_mesh_vertex_colors,
+    isochore_mesh_vertex_count, isochore_mesh_volume, isochore_mesh_write,
 };
 pub use monitor::Progress;
 pub use replay::{NamedMesh, isochore_run, isochore_run_points};

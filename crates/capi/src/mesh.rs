@@ -14,9 +14,9 @@ use crate::{
 };
 
 pub use attributes::{
-    isochore_mesh_material_name, isochore_mesh_normals, isochore_mesh_set_materials, isochore_mesh_set_normals,
-    isochore_mesh_set_uvs, isochore_mesh_set_vertex_colors, isochore_mesh_triangle_materials, isochore_mesh_uvs,
-    isochore_mesh_vertex_colors,
+    isochore_mesh_corner_colors, isochore_mesh_material_name, isochore_mesh_normals, isochore_mesh_set_corner_colors,
+    isochore_mesh_set_materials, isochore_mesh_set_normals, isochore_mesh_set_uvs, isochore_mesh_set_vertex_colors,
+    isochore_mesh_triangle_materials, isochore_mesh_uvs, isochore_mesh_vertex_colors,
 };
 
 /// A triangle mesh.

@@ -353,8 +353,8 @@ pub unsafe extern "C" fn isochore_session_take_changes(session: *mut Session) ->
     })
 }
 
-/// The ranges of a buffer, one of `IsochoreBuffer`, that `isochore_session_take_changes` found to have changed, in order: `count` of them in the session's own
-/// memory, until it is asked again.
+/// The ranges of a buffer, one of `IsochoreBuffer`, that `isochore_session_take_changes` found to have changed, in order: `count` of
+/// them, in the session's own memory, until it is asked again.
 ///
 /// # Safety
 /// `session` is a handle; `ranges` and `count` can be written to.

@@ -169,6 +169,7 @@ static void sessions(void) {
     CHECK(buffers.vertex_count == 4 && buffers.triangle_count == 4 && buffers.uvs == NULL && buffers.colors == NULL);
     CHECK(buffers.positions[11] != 1);
     CHECK(isochore_session_pick(session, above, down, &hit, &done) == ISOCHORE_STATUS_OK && done && hit.distance > 3);
+    CHECK(fabs(hit.weights[0] + hit.weights[1] + hit.weights[2] - 1) < 1e-15);
     CHECK(isochore_session_closest_point(session, above, &hit, &done) == ISOCHORE_STATUS_OK && done);
 
     /* The log gives the same bits on the same mesh. */
@@ -397,6 +398,10 @@ static void attributes(const char *path) {
     CHECK(isochore_mesh_set_uvs(mesh, 0, uvs) == ISOCHORE_STATUS_OK);
     CHECK(isochore_mesh_set_uvs(mesh, 1, uvs) == ISOCHORE_STATUS_OK);
     CHECK(isochore_mesh_set_normals(mesh, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    normals[11] = 0;
+    CHECK(isochore_mesh_set_normals(mesh, normals) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(strstr(isochore_last_error(), "triangle 1"));
+    normals[11] = 1;
     CHECK(isochore_mesh_set_normals(mesh, normals) == ISOCHORE_STATUS_OK);
     CHECK(isochore_mesh_set_vertex_colors(mesh, colors) == ISOCHORE_STATUS_OK);
     CHECK(isochore_mesh_set_materials(mesh, wrong, names, 2) == ISOCHORE_STATUS_ARGUMENT);

@@ -60,7 +60,7 @@ pub use shapes::{Capsule, Ellipsoid, HalfSpace, RoundedBox, ShapeError, Sphere, 
 pub use surface_tree::{SurfaceHit, SurfaceTree};
 pub use topology::Topology;
 pub use tri_mesh::{
-    CornerAttributes, Origin, Resampling, SkinError, SkinTable, SplitError, SubTriangle, Subdivision, TriMesh,
-    TriangleSide, TriangleSplit, VertexAttributes, VertexOrigin,
+    AttributeError, CornerAttributes, Origin, Resampling, SkinError, SkinTable, SplitError, SubTriangle, Subdivision,
+    TriMesh, TriangleSide, TriangleSplit, VertexAttributes, VertexOrigin,
 };
 pub use winding_number::WindingNumber;

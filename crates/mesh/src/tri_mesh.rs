@@ -12,7 +12,7 @@ mod welded;
 
 use glam::DVec3;
 
-pub use attributes::{CornerAttributes, VertexAttributes};
+pub use attributes::{AttributeError, CornerAttributes, VertexAttributes};
 pub use resampled::{Origin, Resampling, VertexOrigin};
 pub use skin_table::{SkinError, SkinTable};
 pub use split::SplitError;

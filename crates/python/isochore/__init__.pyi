@@ -345,7 +345,10 @@ class Session:
         """
 
     def pick(self, origin: ArrayLike, direction: ArrayLike) -> dict[str, Any] | None:
-        """The first point of the surface on a ray: `point`, `normal`, `distance`, `triangle`, `vertices`."""
+        """The first point of the surface on a ray: `point`, `normal`, `distance`, `triangle`, `vertices`.
+
+        `weights` are its barycentric coordinates: how much each of the three vertices counts for it.
+        """
 
     def closest_point(self, point: ArrayLike) -> dict[str, Any] | None:
         """The nearest point of the surface, as `pick` tells of it."""

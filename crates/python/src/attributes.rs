@@ -1,7 +1,7 @@
 //! What a mesh carries besides its geometry, from NumPy arrays.
 
 use bytemuck::cast_slice;
-use glam::{DVec3, DVec4, Vec2, Vec3};
+use glam::{DVec3, DVec4, Vec2};
 use isochore_mesh::TriMesh;
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -25,12 +25,8 @@ pub(crate) fn set_normals(mesh: &mut TriMesh, normals: &Bound<'_, PyAny>) -> Res
     let normals = contiguous::<f64>(normals)?;
     check_shape("normals", normals.shape(), &[Some(mesh.triangles.len()), Some(3), Some(3)])?;
     let given: &[[DVec3; 3]] = cast_slice(numbers("normals", &normals)?);
-    let unit = |(triangle, corners): (usize, &[DVec3; 3])| match corners.map(DVec3::try_normalize) {
-        [Some(a), Some(b), Some(c)] => Ok([a, b, c].map(|normal| normal.as_vec3())),
-        _ => Err(Failure::Argument(format!("normals: one of triangle {triangle} has no direction"))),
-    };
-    mesh.corner.normals = py.detach(|| given.iter().enumerate().map(unit).collect::<Result<Vec<[Vec3; 3]>, _>>())?;
-    Ok(())
+    let set = py.detach(|| mesh.corner.set_normals(given));
+    set.map_err(|error| Failure::Argument(error.to_string()))
 }
 
 /// Colors by vertex, (V, 4).

@@ -406,6 +406,7 @@ fn hit_to_dict<'py>(py: Python<'py>, hit: &session::Hit) -> PyResult<Bound<'py, 
     dict.set_item("triangle", hit.triangle)?;
     dict.set_item("vertices", hit.vertices)?;
     dict.set_item("point", hit.point.to_array())?;
+    dict.set_item("weights", hit.weights.to_array())?;
     dict.set_item("normal", hit.normal.to_array())?;
     dict.set_item("distance", hit.distance)?;
     Ok(dict)

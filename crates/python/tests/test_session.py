@@ -149,6 +149,7 @@ def test_queries(ball, brush):
     session = isochore.Session(ball)
     hit = session.pick([0, 0, 5], [0, 0, -1])
     assert hit["point"] == pytest.approx([0, 0, 1], abs=1e-3) and hit["distance"] == pytest.approx(4, abs=1e-3)
+    assert np.dot(hit["weights"], ball.positions[list(hit["vertices"])]) == pytest.approx(hit["point"], abs=1e-6)
     assert session.pick([0, 0, 5], [0, 0, 1]) is None
     assert session.closest_point([0, 3, 0])["point"] == pytest.approx([0, 1, 0], abs=2e-2)
     reach = session.vertices_in_reach(brush, [0, 0, 1.2])

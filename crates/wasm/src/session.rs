@@ -174,13 +174,13 @@ impl Session {
         self.session.log().to_json()
     }
 
-    /// The surface as a mesh of its own. With `lock`, with what the lock has added at the end of each stroke; else where the flow
-    /// alone has taken it.
-    pub fn export(&self, lock: bool) -> Mesh {
-        Mesh { mesh: self.session.export(lock).mesh.into() }
+    /// The surface as a mesh of its own, as `positions` show it: with what the lock has added at the end of each stroke. With `lock`
+    /// false, where the flow alone has taken it, to the bits that the log gives elsewhere.
+    pub fn export(&self, lock: Option<bool>) -> Mesh {
+        Mesh { mesh: self.session.export(lock.unwrap_or(true)).mesh.into() }
     }
 
-    /// Number in the session of each vertex of what `export` gives now.
+    /// Number in the session of each vertex of what `export` gives now, in ascending order: those that were not removed.
     #[wasm_bindgen(getter, js_name = exportedVertices)]
     pub fn exported_vertices(&self) -> Vec<u32> {
         self.session.vertices().collect()

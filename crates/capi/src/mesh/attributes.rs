@@ -3,6 +3,7 @@
 use std::{ffi::c_char, sync::Arc};
 
 use bytemuck::cast_slice;
+use glam::Vec3;
 use isochore_mesh::TriMesh;
 
 use super::Mesh;
@@ -50,7 +51,7 @@ pub unsafe extern "C" fn isochore_mesh_uvs(
     })
 }
 
-/// Copies shading normals: x, y, z of unit length for the three corners of each triangle.
+/// Copies shading normals: x, y, z, of any length, of the three corners of each triangle. They turn with the surface.
 ///
 /// # Safety
 /// `mesh` is a handle; `normals` has 9 values for each triangle.
@@ -60,9 +61,10 @@ pub unsafe extern "C" fn isochore_mesh_set_normals(mesh: *mut Mesh, normals: *co
         // SAFETY: as the caller promises.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
         // SAFETY: as the caller promises.
-        let normals = unsafe { finite_values("normals", normals, 9, mesh.mesh.triangles.len(), f32::is_finite) }?;
-        Arc::make_mut(&mut mesh.mesh).corner.normals = normals;
-        Ok(())
+        let normals: Vec<[Vec3; 3]> =
+            unsafe { finite_values("normals", normals, 9, mesh.mesh.triangles.len(), f32::is_finite) }?;
+        let normals: Vec<_> = normals.into_iter().map(|corners| corners.map(|normal| normal.as_dvec3())).collect();
+        Arc::make_mut(&mut mesh.mesh).corner.set_normals(&normals).map_err(Failure::argument)
     })
 }
 
@@ -112,6 +114,36 @@ pub unsafe extern "C" fn isochore_mesh_vertex_colors(
     guarded(|| unsafe { put_slice("colors", colors, count, cast_slice(&reference("mesh", mesh)?.mesh.vertex.colors)) })
 }
 
+/// Copies colors: linear red, green, blue and alpha of the three corners of each triangle, 0 to 1, where they differ across seams.
+///
+/// # Safety
+/// `mesh` is a handle; `colors` has 12 values for each triangle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn isochore_mesh_set_corner_colors(mesh: *mut Mesh, colors: *const f64) -> Status {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let mesh = unsafe { reference_mut("mesh", mesh) }?;
+        // SAFETY: as the caller promises.
+        let colors = unsafe { finite_values("colors", colors, 12, mesh.mesh.triangles.len(), f64::is_finite) }?;
+        Arc::make_mut(&mut mesh.mesh).corner.colors = colors;
+        Ok(())
+    })
+}
+
+/// Tells where the colors of the corners lie, and how many numbers they are: twelve a triangle, or none.
+///
+/// # Safety
+/// `mesh` is a handle; `colors` and `count` can be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn isochore_mesh_corner_colors(
+    mesh: *const Mesh,
+    colors: *mut *const f64,
+    count: *mut usize,
+) -> Status {
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { put_slice("colors", colors, count, cast_slice(&reference("mesh", mesh)?.mesh.corner.colors)) })
+}
+
 /// Copies the materials: the number of each triangle's material, and the names of all.
 ///
 /// # Safety
@@ -129,16 +161,10 @@ pub unsafe extern "C" fn isochore_mesh_set_materials(
         // SAFETY: as the caller promises.
         let (numbers, names) =
             unsafe { (array("of_triangles", of_triangles, mesh.mesh.triangles.len())?, array("names", names, count)?) };
-        if let Some(triangle) = numbers.iter().position(|&number| number as usize >= count) {
-            let number = numbers[triangle];
-            return Err(Failure::argument(format!("triangle {triangle} has material {number} of {count}")));
-        }
         // SAFETY: as the caller promises.
         let names = names.iter().map(|&name| unsafe { text("names", name) }.map(str::to_owned));
         let names = names.collect::<Result<_, _>>()?;
-        let changed = Arc::make_mut(&mut mesh.mesh);
-        (changed.triangle_materials, changed.materials) = (numbers.to_vec(), names);
-        Ok(())
+        Arc::make_mut(&mut mesh.mesh).set_materials(names, numbers.to_vec()).map_err(Failure::argument)
     })
 }
 

@@ -21,6 +21,8 @@ pub struct Hit {
     pub vertices: [u32; 3],
     /// The point, model units.
     pub point: [f64; 3],
+    /// Its barycentric coordinates in the triangle: how much each of the vertices counts for it.
+    pub weights: [f64; 3],
     /// Unit normal of the triangle.
     pub normal: [f64; 3],
     /// Distance from where the query began: of a closest point in model units, of a pick in lengths of its direction.
@@ -303,6 +305,7 @@ unsafe fn answer(found: Option<SurfaceHit>, hit: *mut Hit, is_hit: *mut bool) ->
             triangle: found.triangle,
             vertices: found.vertices,
             point: found.point.to_array(),
+            weights: found.weights.to_array(),
             normal: found.normal.to_array(),
             distance: found.distance,
         };

@@ -1,6 +1,8 @@
 //! What vertices and corners carry besides positions.
 
-use glam::{DVec4, Vec2, Vec3};
+use glam::{DVec3, DVec4, Vec2, Vec3};
+
+use super::TriMesh;
 
 /// Attributes by corner: one entry a triangle, three values in the order of its vertices.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -18,6 +20,66 @@ impl CornerAttributes {
     pub fn is_empty(&self) -> bool {
         self.uvs.is_empty() && self.normals.is_empty() && self.colors.is_empty()
     }
+
+    /// Takes shading normals from vectors of any length, three for each triangle.
+    ///
+    /// # Errors
+    /// [`AttributeError::NoDirection`]; the normals are then as they were before.
+    pub fn set_normals(&mut self, vectors: &[[DVec3; 3]]) -> Result<(), AttributeError> {
+        let unit = |(triangle, corners): (usize, &[DVec3; 3])| match corners.map(DVec3::try_normalize) {
+            [Some(a), Some(b), Some(c)] => Ok([a, b, c].map(|normal| normal.as_vec3())),
+            _ => Err(AttributeError::NoDirection { triangle }),
+        };
+        self.normals = vectors.iter().enumerate().map(unit).collect::<Result<_, _>>()?;
+        Ok(())
+    }
+}
+
+/// Why values are no attributes of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum AttributeError {
+    /// A normal is zero or no number.
+    #[error("normals: one of triangle {triangle} has no direction")]
+    NoDirection {
+        /// Index of the triangle.
+        triangle: usize,
+    },
+    /// Not each triangle has a material.
+    #[error("{found} triangles have materials, not {triangles}")]
+    MaterialCount {
+        /// Materials given.
+        found: usize,
+        /// Triangles of the mesh.
+        triangles: usize,
+    },
+    /// A triangle has a material that is not there.
+    #[error("triangle {triangle} has material {material} of {count}")]
+    NoMaterial {
+        /// Index of the triangle.
+        triangle: usize,
+        /// Its material.
+        material: u32,
+        /// How many materials there are.
+        count: usize,
+    },
+}
+
+impl TriMesh {
+    /// Takes the names of the materials, and for each triangle which of them it has.
+    ///
+    /// # Errors
+    /// [`AttributeError`]; the materials are then as they were before.
+    pub fn set_materials(&mut self, names: Vec<String>, of_triangles: Vec<u32>) -> Result<(), AttributeError> {
+        let (found, triangles, count) = (of_triangles.len(), self.triangles.len(), names.len());
+        if found != triangles {
+            return Err(AttributeError::MaterialCount { found, triangles });
+        }
+        if let Some(triangle) = of_triangles.iter().position(|&material| material as usize >= count) {
+            return Err(AttributeError::NoMaterial { triangle, material: of_triangles[triangle], count });
+        }
+        (self.materials, self.triangle_materials) = (names, of_triangles);
+        Ok(())
+    }
 }
 
 /// Attributes by vertex.
@@ -27,4 +89,39 @@ pub struct VertexAttributes {
     pub colors: Vec<DVec4>,
     /// Skin influences, joint index and weight; the weights of a vertex sum to one.
     pub skin: Vec<Vec<(u32, f64)>>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::primitives::icosphere;
+
+    #[test]
+    fn normals_get_unit_length_or_are_refused() {
+        let mut corner = CornerAttributes::default();
+        corner.set_normals(&[[DVec3::new(0.0, 3.0, 4.0), DVec3::X, DVec3::NEG_Z * 1e-9]]).unwrap();
+        let unit = vec![[Vec3::new(0.0, 0.6, 0.8), Vec3::X, Vec3::NEG_Z]];
+        assert_eq!(corner.normals, unit);
+        for bad in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY] {
+            let refused = corner.set_normals(&[[DVec3::X; 3], [DVec3::X, bad, DVec3::X]]);
+            assert_eq!(refused, Err(AttributeError::NoDirection { triangle: 1 }));
+        }
+        assert_eq!(corner.normals, unit);
+    }
+
+    #[test]
+    fn each_triangle_has_a_material_that_is_there() {
+        let mut mesh = icosphere(1.0, 0);
+        let names = || vec!["clay".to_owned(), "glaze".to_owned()];
+        let refused = mesh.set_materials(names(), vec![0; 19]);
+        assert_eq!(refused, Err(AttributeError::MaterialCount { found: 19, triangles: 20 }));
+        let mut of_triangles = vec![1; 20];
+        of_triangles[7] = 2;
+        let refused = mesh.set_materials(names(), of_triangles.clone());
+        assert_eq!(refused, Err(AttributeError::NoMaterial { triangle: 7, material: 2, count: 2 }));
+        assert_eq!(mesh, icosphere(1.0, 0));
+        of_triangles[7] = 0;
+        mesh.set_materials(names(), of_triangles.clone()).unwrap();
+        assert_eq!((mesh.materials, mesh.triangle_materials), (names(), of_triangles));
+    }
 }

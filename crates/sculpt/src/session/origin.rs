@@ -49,7 +49,7 @@ fn weights_in(mesh: &TriMesh, origin: &Origin, triangle: u32) -> Option<DVec3> {
 }
 
 /// Barycentric coordinates of the point of a triangle nearest to `point`, up to rounding.
-fn nearest_weights(point: DVec3, corners: &[DVec3; 3]) -> DVec3 {
+pub(super) fn nearest_weights(point: DVec3, corners: &[DVec3; 3]) -> DVec3 {
     let [a, b, c] = *corners;
     let normal = (b - a).cross(c - a);
     let area = normal.length_squared();

@@ -4,7 +4,7 @@ use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::{Aabb, DistanceBlock, LANES, Origin, PointBlock, SurfaceHit};
 
-use super::{MovedVolume, Session, SessionError, SessionTool, surface::Surface};
+use super::{MovedVolume, Session, SessionError, SessionTool, origin::nearest_weights, surface::Surface};
 
 /// A point of the surface that a ray or a point found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Hit {
     pub vertices: [u32; 3],
     /// The point, model units.
     pub point: DVec3,
+    /// Its barycentric coordinates in the triangle, up to rounding: how much each of the vertices counts for it.
+    pub weights: DVec3,
     /// Unit normal of the triangle; zero where it has no area.
     pub normal: DVec3,
     /// Along a ray in lengths of its direction; else in model units.
@@ -210,11 +212,13 @@ impl Session {
 impl Surface {
     fn hit(&self, hit: SurfaceHit) -> Hit {
         let vertices = self.topology.triangles()[hit.triangle as usize].vertices;
-        let [a, b, c] = vertices.map(|vertex| self.shown(vertex));
+        let corners = vertices.map(|vertex| self.shown(vertex));
+        let [a, b, c] = corners;
         Hit {
             triangle: hit.triangle,
             vertices,
             point: hit.point,
+            weights: nearest_weights(hit.point, &corners),
             normal: (b - a).cross(c - a).normalize_or_zero(),
             distance: hit.distance,
         }

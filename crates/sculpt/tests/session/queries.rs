@@ -18,6 +18,12 @@ fn picks_and_closest_points_follow_the_surface() {
             assert!(bvh.closest_point(picked.point).distance < 1e-14);
             assert!((picked.normal.length() - 1.0).abs() < 1e-14);
             assert_eq!(session.triangle(picked.triangle), Some(picked.vertices));
+            for hit in [&hit, &picked] {
+                let shown = hit.vertices.map(|v| session.positions()[v as usize] + session.offsets()[v as usize]);
+                let told: DVec3 = (0..3).map(|corner| shown[corner] * hit.weights[corner]).sum();
+                assert!(told.distance(hit.point) < 1e-14 && hit.weights.min_element() >= 0.0);
+                assert!((hit.weights.element_sum() - 1.0).abs() < 1e-15);
+            }
         }
     }
     assert_eq!(session.pick(DVec3::splat(5.0), DVec3::ONE), None);

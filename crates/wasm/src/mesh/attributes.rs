@@ -22,11 +22,7 @@ pub(super) fn set(mesh: &mut TriMesh, given: &MeshAttributes) -> Result<(), JsEr
     }
     if let Some(normals) = given.normals() {
         let normals: Vec<[DVec3; 3]> = rows("normals", &normals, triangles)?;
-        let unit = |(triangle, corners): (usize, &[DVec3; 3])| match corners.map(DVec3::try_normalize) {
-            [Some(a), Some(b), Some(c)] => Ok([a, b, c].map(|normal| normal.as_vec3())),
-            _ => Err(thrown(format!("normals: one of triangle {triangle} has no direction"))),
-        };
-        mesh.corner.normals = normals.iter().enumerate().map(unit).collect::<Result<_, _>>()?;
+        mesh.corner.set_normals(&normals).map_err(thrown)?;
     }
     if let Some(colors) = given.colors() {
         mesh.vertex.colors = rows("colors", &colors, vertices)?;
@@ -36,7 +32,7 @@ pub(super) fn set(mesh: &mut TriMesh, given: &MeshAttributes) -> Result<(), JsEr
     }
     match (given.materials(), given.triangle_materials()) {
         (None, None) => {}
-        (Some(names), Some(of_triangles)) => set_materials(mesh, names, of_triangles)?,
+        (Some(names), Some(of_triangles)) => mesh.set_materials(names, of_triangles).map_err(thrown)?,
         _ => return Err(thrown("materials and triangleMaterials need each other")),
     }
     let (joints, weights) = (given.joints(), given.weights());
@@ -45,19 +41,6 @@ pub(super) fn set(mesh: &mut TriMesh, given: &MeshAttributes) -> Result<(), JsEr
         let per_vertex = joints.len().checked_div(vertices).unwrap_or(0);
         mesh.vertex.set_skin_table(vertices, per_vertex, &joints, &weights).map_err(thrown)?;
     }
-    Ok(())
-}
-
-fn set_materials(mesh: &mut TriMesh, names: Vec<String>, of_triangles: Vec<u32>) -> Result<(), JsError> {
-    let (triangles, found, count) = (mesh.triangles.len(), of_triangles.len(), names.len());
-    if found != triangles {
-        return Err(thrown(format!("triangleMaterials: {triangles} numbers are wanted, not {found}")));
-    }
-    if let Some(triangle) = of_triangles.iter().position(|&material| material as usize >= count) {
-        let material = of_triangles[triangle];
-        return Err(thrown(format!("triangleMaterials: triangle {triangle} has material {material} of {count}")));
-    }
-    (mesh.materials, mesh.triangle_materials) = (names, of_triangles);
     Ok(())
 }
 

@@ -140,6 +140,12 @@ impl Hit {
         self.hit.point.to_array().to_vec()
     }
 
+    /// Its barycentric coordinates in the triangle: how much each of the vertices counts for it.
+    #[wasm_bindgen(getter)]
+    pub fn weights(&self) -> Vec<f64> {
+        self.hit.weights.to_array().to_vec()
+    }
+
     /// Unit normal of the triangle.
     #[wasm_bindgen(getter)]
     pub fn normal(&self) -> Vec<f64> {
