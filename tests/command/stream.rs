@@ -197,3 +197,43 @@ fn what_needs_a_mesh_is_refused_by_key() {
     let folder = Folder::with(&[("press.toml", PRESS)]);
     folder.run(&["run", "press.toml", "--stream"]).expect_error(2, &["target", "needs target.mesh"]);
 }
+
+/// Bytes that a stream may have for data, as the README states them; the system enforces it.
+///
+/// Of a chunk of 65,536 points there are the bytes of the file, here 24 a point, and the positions before and after the strokes, 24
+/// each: 5 MB. Two files are read and written through 1 MiB each, and three threads have stacks of up to 2 MiB: 13 MB in all, which
+/// leaves a third for the allocator and the library's own.
+#[cfg(target_os = "linux")]
+const STREAM_MEMORY: usize = 20_000_000;
+
+#[cfg(target_os = "linux")]
+#[test]
+fn files_larger_than_the_memory_are_streamed() {
+    const TIMES: usize = 1000;
+    let repeated: Vec<u8> = points().iter().flat_map(|point| point.to_array()).flat_map(f64::to_le_bytes).collect();
+    let repeated = repeated.repeat(TIMES);
+    assert!(repeated.len() > 2 * STREAM_MEMORY);
+    let count = TIMES * points().len();
+    let ply = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {count}\nproperty double x\nproperty double y\nproperty double z\nend_header\n"
+    );
+    for (name, header) in [("in.npy", numpy_header(&format!("({count}, 3)"), "<f8")), ("in.ply", ply.into_bytes())] {
+        let folder = Folder::with(&[("press.toml", &recipe(name))]);
+        fs::write(folder.path(name), [&header, &repeated[..]].concat()).unwrap();
+        let run = |bytes: usize| {
+            let command = folder.command(&["run", "press.toml", "--stream", "--threads", "2"]);
+            let mut limited = std::process::Command::new("sh");
+            let limit = ["-c", "ulimit -d \"$0\" && exec \"$@\"", &(bytes / 1024).to_string()];
+            limited.current_dir(folder.path("")).args(limit).arg(command.get_program()).args(command.get_args());
+            crate::folder::Run::of(limited.output().unwrap())
+        };
+        // Less would not do, so that the limit is one.
+        assert_ne!(run(STREAM_MEMORY / 4).code, Some(0));
+        run(STREAM_MEMORY).expect(0);
+        let out = folder.read(&name.replace("in", "out"));
+        let (first, last) = (&out[header.len()..][..24 * points().len()], &out[out.len() - 24 * points().len()..]);
+        assert!(out.len() == header.len() + repeated.len() && first == last);
+        let carried: Vec<u8> = carried(name).iter().flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes).collect();
+        assert!(first == carried);
+    }
+}

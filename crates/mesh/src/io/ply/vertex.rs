@@ -60,9 +60,12 @@ pub(in crate::io) fn read_points(
     points: &mut Vec<DVec3>,
 ) -> Result<(), (usize, String)> {
     let mut reader = Reader::new(bytes);
-    let read = Parser::<Vertex>::new().read_payload_for_element(&mut reader, element, header);
-    let vertices = read.map_err(|error| (reader.line() - 1, problem(&error)))?;
-    points.extend(vertices.iter().map(|vertex| vertex.position));
+    for part in Body::parts(element) {
+        let element = ElementDef { count: part.len(), ..element.clone() };
+        let read = Parser::<Vertex>::new().read_payload_for_element(&mut reader, &element, header);
+        let vertices = read.map_err(|error| (reader.line() - 1, problem(&error)))?;
+        points.extend(vertices.iter().map(|vertex| vertex.position));
+    }
     match points.iter().position(|point| !point.is_finite()) {
         Some(bad) => Err((bad, "has a coordinate that is not a finite number".into())),
         None => Ok(()),
