@@ -335,9 +335,10 @@ fn stops_in_every_stage_when_cancelled() {
             self.asked.fetch_add(1, Ordering::Relaxed) >= self.limit
         }
     }
+    let options = DistanceFieldOptions { resolution: 8, ..Default::default() };
     let stopping = |limit: usize| {
         let monitor = StopAfter { limit, ..Default::default() };
-        let result = DistanceField::new(&bumpy(), &Default::default(), &monitor).map(|_| ());
+        let result = DistanceField::new(&icosphere(1.0, 1), &options, &monitor).map(|_| ());
         (result, monitor.asked.into_inner(), monitor.stage.into_inner().unwrap())
     };
     let (result, asked, last) = stopping(usize::MAX);
