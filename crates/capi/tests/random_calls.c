@@ -109,14 +109,23 @@ static void look_at(IsochoreSession *session) {
 /* The surface as a mesh of its own, and back through all that a mesh can tell. */
 static void export_from(IsochoreSession *session) {
     IsochoreMesh *mesh = NULL;
-    const uint32_t *vertices = NULL;
-    size_t count = 0;
+    const uint32_t *vertices = NULL, *map = NULL;
+    size_t count = 0, opened_count = 0;
     double volume = 0;
     CHECK(isochore_session_export(session, below(2), &mesh) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_vertices(session, &vertices, &count) == ISOCHORE_STATUS_OK);
     CHECK(count == isochore_mesh_vertex_count(mesh));
     for (size_t i = 1; i < count; i++) {
         CHECK(vertices[i - 1] < vertices[i]);
+    }
+    /* What stands in the place of each vertex of the cube is there. */
+    CHECK(isochore_session_vertex_map(session, &map, &opened_count) == ISOCHORE_STATUS_OK && opened_count == 8);
+    for (size_t vertex = 0; vertex < opened_count; vertex++) {
+        size_t place = 0;
+        while (place < count && vertices[place] != map[vertex]) {
+            place++;
+        }
+        CHECK(place < count);
     }
     CHECK(isochore_mesh_volume(mesh, &volume) == ISOCHORE_STATUS_OK && isfinite(volume));
     size_t values = isochore_mesh_vertex_count(mesh) * isochore_mesh_skin_influences(mesh);

@@ -52,7 +52,7 @@ pub(super) struct Surface {
     /// Nothing in it is ever changed, but removed, and its place taken.
     pub(super) render: Journaled<RenderVertex>,
     free_render: FreeSlots,
-    /// All collapses so far, in order: the vertex that was removed, and the one in its place.
+    /// All collapses so far, in order: the vertex that was removed, and the one in its place. They stay as long as the log does.
     pub(super) merges: Journaled<[u32; 2]>,
     /// Render vertices whose texture coordinates and colors are to be written.
     renewed: Vec<u32>,
