@@ -47,7 +47,8 @@ pub struct Session {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct SessionOptions {
-    /// Travel of the tool in one time step, as in a recipe.
+    /// Travel of the fastest point of the tool's surface in one time step, as a share of the support or of half the tool's shortest
+    /// extent, whichever is less; at most 1.
     pub step: f64,
     /// Bytes that undo and redo may hold.
     pub undo_bytes: usize,

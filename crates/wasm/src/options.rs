@@ -30,7 +30,8 @@ export interface MeshAttributes {
 
 /** How a session works. */
 export interface SessionOptions {
-  /** Travel of the tool in one time step, as `integrate.step` of a recipe. */
+  /** Travel of the fastest point of the tool's surface in one time step, as a share of the support or of half the tool's shortest
+   * extent, whichever is less; at most 1. */
   step?: number;
   /** Bytes that undo and redo may hold; beyond, the oldest strokes are forgotten. */
   undoBytes?: number;

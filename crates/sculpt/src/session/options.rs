@@ -12,7 +12,8 @@ pub struct SessionOptions {
     pub target: Target,
     /// What holds all strokes back, in the coordinates of the mesh as opened. Edges that it holds are not edited either.
     pub mask: recipe::Mask,
-    /// Travel in one time step, as the recipe's `integrate.step`.
+    /// Travel of the fastest point of the tool's surface in one time step, as a share of the support or of half the tool's shortest
+    /// extent, whichever is less; at most 1. The recipe's `integrate.step`.
     pub step: f64,
     /// Bytes that undo and redo may hold, whatever is undone. The oldest strokes are forgotten first; the last one is always kept.
     pub undo_bytes: usize,
