@@ -43,7 +43,10 @@ class Cancelled(Error):
 
 @final
 class Mesh:
-    """A triangle mesh. It never changes: its arrays are read-only views, which keep it alive."""
+    """A triangle mesh. It never changes: its arrays are read-only views, which keep it alive.
+
+    It can be pickled, with all that a file said of it, and so be sent to other processes.
+    """
 
     def __new__(
         cls,
@@ -165,6 +168,8 @@ class Mesh:
     def is_closed(self) -> bool:
         """Whether every edge lies between two triangles that agree on which side is outside."""
 
+    def __copy__(self) -> Mesh: ...
+    def __deepcopy__(self, memo: Any, /) -> Mesh: ...
     def self_intersections(self, *, progress: _Progress | None = None) -> NDArray[np.uint32]:
         """Indices of the triangles that intersect others, by exact arithmetic, in ascending order."""
 

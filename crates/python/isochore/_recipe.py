@@ -39,11 +39,14 @@ def parse(recipe, settings):
     else:
         path = pathlib.Path(os.fspath(recipe))
         folder, text, is_json = path.parent, path.read_text(encoding="utf-8"), path.suffix.lower() == ".json"
-    if not isinstance(settings, Mapping):
-        settings = [str(setting) for setting in settings]
-    else:
-        settings = [f"{key}={to_json(value)}" for key, value in settings.items()]
-    return LoadedRecipe(text, is_json, settings), folder
+    return LoadedRecipe(text, is_json, setting_texts(settings)), folder
+
+
+def setting_texts(settings):
+    """Settings, which may be a mapping, as texts KEY=VALUE."""
+    if isinstance(settings, Mapping):
+        return [f"{key}={to_json(value)}" for key, value in settings.items()]
+    return [str(setting) for setting in settings]
 
 
 def _load(recipe, meshes, settings):

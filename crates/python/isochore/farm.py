@@ -23,6 +23,7 @@ from urllib.parse import unquote
 
 from isochore._recipe import parse as _parse
 from isochore._recipe import run as _run
+from isochore._recipe import setting_texts as _setting_texts
 
 try:
     from distributed import as_completed
@@ -44,7 +45,7 @@ def run(recipe, targets, folder, *, client, format="ply", settings=()):
     if not set(places).isdisjoint([*targets, recipe]):
         raise ValueError(f"{folder}: results would take the place of what they are made from")
     # Impure: whether there is anything to do, the worker finds out from the files.
-    deform = functools.partial(client.submit, _deform, recipe, settings=list(settings), pure=False)
+    deform = functools.partial(client.submit, _deform, recipe, settings=_setting_texts(settings), pure=False)
     tasks = {deform(target, place): target for place, target in of_place.items()}
     for task in as_completed(tasks):
         yield tasks[task], task.exception() or task.result()

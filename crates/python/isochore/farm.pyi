@@ -1,4 +1,4 @@
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -12,10 +12,11 @@ def run(
     *,
     client: Client,
     format: str = "ply",
-    settings: Iterable[str] = (),
+    settings: Mapping[str, Any] | Iterable[str] = (),
 ) -> Iterator[tuple[Path, dict[str, Any] | BaseException]]:
     """Deforms each mesh file of `targets`, in place of the recipe's own target, into `folder`.
 
     The result of `scans/a.obj` is `folder/a.ply`, in `format`, with its report beside it. Yields each target with its report, or with
-    what went wrong, as they come in. settings: KEY=VALUE.
+    what went wrong, as they come in. settings: win over the
+    recipe, {"refine.volume": 1e-5}.
     """

@@ -6,6 +6,7 @@ mod distance;
 mod error;
 mod keys;
 mod mesh;
+mod pickled;
 mod replay;
 mod session;
 mod tool;

@@ -18,6 +18,7 @@ use crate::{
     arrays::{contiguous, points, triangles, view},
     attributes,
     error::Failure,
+    pickled::PickledMesh,
     watch::watched,
 };
 
@@ -220,6 +221,25 @@ impl Mesh {
     ) -> Result<Bound<'py, PyArray1<u32>>, Failure> {
         let found = watched(py, progress, |monitor| Ok(SelfIntersections::of(&self.mesh, monitor)?))?;
         Ok(found.triangles().to_vec().into_pyarray(py))
+    }
+
+    /// It never changes, so that it is its own copy.
+    fn __copy__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    fn __deepcopy__<'py>(slf: PyRef<'py, Self>, _memo: &Bound<'_, PyAny>) -> PyRef<'py, Self> {
+        slf
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (PickledMesh,))> {
+        let restore = py.get_type::<Self>().getattr("_restored")?;
+        Ok((restore, (py.detach(|| PickledMesh::of(&self.mesh)),)))
+    }
+
+    #[classmethod]
+    fn _restored(_class: &Bound<'_, PyType>, py: Python<'_>, pickled: PickledMesh) -> Result<Self, Failure> {
+        Ok(Self { mesh: py.detach(|| pickled.restored())?.into() })
     }
 
     fn __repr__(&self) -> String {

@@ -68,7 +68,7 @@ def test_what_has_changed_is_done_again(client, job, tmp_path):
     recipe, targets = job
     results = tmp_path / "results"
     [(_, first)] = farm.run(recipe, targets[:1], results, client=client)
-    [(_, second)] = farm.run(recipe, targets[:1], results, client=client, settings=["refine.enabled=false"])
+    [(_, second)] = farm.run(recipe, targets[:1], results, client=client, settings={"refine.enabled": False})
     assert first["inserted_vertices"] > 0 and second["inserted_vertices"] == 0
 
 

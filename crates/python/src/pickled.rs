@@ -1,0 +1,105 @@
+//! Meshes as plain data, for `pickle` and what sends objects to other processes by it.
+
+use std::sync::Arc;
+
+use bytemuck::{NoUninit, cast_slice, pod_collect_to_vec};
+use glam::{DVec3, DVec4, Vec2, Vec3};
+use isochore_mesh::{Assets, CornerAttributes, GltfAssets, Names, TriMesh, VertexAttributes};
+use pyo3::prelude::*;
+
+use crate::error::Failure;
+
+/// All that a mesh is, numbers as their bytes, so that it comes back to the bit.
+#[derive(FromPyObject, IntoPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct PickledMesh {
+    positions: Vec<u8>,
+    triangles: Vec<u8>,
+    uvs: Vec<Vec<u8>>,
+    normals: Vec<u8>,
+    corner_colors: Vec<u8>,
+    colors: Vec<u8>,
+    /// By vertex, how many joints it has; none where no vertex has any.
+    skin_counts: Vec<u8>,
+    joints: Vec<u8>,
+    weights: Vec<u8>,
+    triangle_materials: Vec<u8>,
+    materials: Vec<String>,
+    /// Of the mesh, the node, and the scene.
+    names: [String; 3],
+    material_libraries: Vec<String>,
+    /// JSON, and the bytes that it refers to.
+    gltf: Option<(String, Vec<u8>)>,
+}
+
+impl PickledMesh {
+    pub(crate) fn of(mesh: &TriMesh) -> Self {
+        fn bytes<T: NoUninit>(values: &[T]) -> Vec<u8> {
+            cast_slice(values).to_vec()
+        }
+        let skin = &mesh.vertex.skin;
+        let counts: Vec<u32> = skin.iter().map(|influences| influences.len() as u32).collect();
+        let (joints, weights): (Vec<u32>, Vec<f64>) = skin.iter().flatten().copied().unzip();
+        let Names { mesh: name, node, scene } = mesh.assets.names.clone();
+        let gltf = mesh.assets.gltf.as_ref();
+        Self {
+            positions: bytes(&mesh.positions),
+            triangles: bytes(&mesh.triangles),
+            uvs: mesh.corner.uvs.iter().map(|set| bytes(set)).collect(),
+            normals: bytes(&mesh.corner.normals),
+            corner_colors: bytes(&mesh.corner.colors),
+            colors: bytes(&mesh.vertex.colors),
+            skin_counts: bytes(&counts),
+            joints: bytes(&joints),
+            weights: bytes(&weights),
+            triangle_materials: bytes(&mesh.triangle_materials),
+            materials: mesh.materials.clone(),
+            names: [name, node, scene],
+            material_libraries: mesh.assets.material_libraries.clone(),
+            gltf: gltf.map(|gltf| (serde_json::Value::from(gltf.json.clone()).to_string(), gltf.bytes.clone())),
+        }
+    }
+
+    /// The mesh again.
+    ///
+    /// # Errors
+    /// What is no mesh, as from another version.
+    pub(crate) fn restored(self) -> Result<TriMesh, Failure> {
+        let gltf = |(json, bytes): (String, Vec<u8>)| {
+            Ok::<_, Failure>(Arc::new(GltfAssets { json: serde_json::from_str(&json).map_err(Failure::input)?, bytes }))
+        };
+        let [name, node, scene] = self.names;
+        let counts: Vec<u32> = pod_collect_to_vec(&self.skin_counts);
+        let (joints, weights) = (pod_collect_to_vec::<u8, u32>(&self.joints), pod_collect_to_vec(&self.weights));
+        let mut influences = joints.into_iter().zip(weights);
+        let mesh = TriMesh {
+            positions: pod_collect_to_vec::<_, DVec3>(&self.positions),
+            triangles: pod_collect_to_vec(&self.triangles),
+            corner: CornerAttributes {
+                uvs: self.uvs.iter().map(|set| pod_collect_to_vec::<_, [Vec2; 3]>(set)).collect(),
+                normals: pod_collect_to_vec::<_, [Vec3; 3]>(&self.normals),
+                colors: pod_collect_to_vec::<_, [DVec4; 3]>(&self.corner_colors),
+            },
+            vertex: VertexAttributes {
+                colors: pod_collect_to_vec(&self.colors),
+                skin: counts.iter().map(|&count| influences.by_ref().take(count as usize).collect()).collect(),
+            },
+            triangle_materials: pod_collect_to_vec(&self.triangle_materials),
+            materials: self.materials,
+            assets: Assets {
+                names: Names { mesh: name, node, scene },
+                material_libraries: self.material_libraries,
+                gltf: self.gltf.map(gltf).transpose()?,
+            },
+        };
+        mesh.check_valid()?;
+        let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
+        let corner = &mesh.corner;
+        let by_triangle = [corner.normals.len(), corner.colors.len(), mesh.triangle_materials.len()];
+        let is_whole = by_triangle.iter().all(|&count| count == 0 || count == triangles)
+            && corner.uvs.iter().all(|set| set.len() == triangles)
+            && [mesh.vertex.colors.len(), mesh.vertex.skin.len()].iter().all(|&count| count == 0 || count == vertices)
+            && mesh.triangle_materials.iter().all(|&material| (material as usize) < mesh.materials.len());
+        if is_whole { Ok(mesh) } else { Err(Failure::Argument("what was pickled is no mesh".into())) }
+    }
+}
