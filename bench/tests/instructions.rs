@@ -5,14 +5,19 @@
 
 #![allow(clippy::print_stderr, reason = "says what differs")]
 
-use std::{collections::BTreeMap, env, fs, path::Path, process::Command, sync::Arc};
+use std::{collections::BTreeMap, env, fs, ops::Range, path::Path, process::Command, sync::Arc};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use isochore_bench::{on_one_core, scan, scratch};
 use isochore_curve::{FrameMethod, Spine, TrigonometricCurve, rotation_minimizing_frames};
 use isochore_field::{Move, Pose, Profile, Stroke, Tool, flow_points};
 use isochore_mesh::{
     Capsule, Distance, DistanceField, DistanceFieldOptions, Padding, SelfIntersections, Silent, io, primitives,
+};
+use isochore_sculpt::{
+    Meshes,
+    recipe::{self, Sphere, ToolShape},
+    session::{InteractiveRefinement, Session, SessionOptions, SessionTool, StrokeOptions},
 };
 use serde::{Deserialize, Serialize};
 
@@ -27,8 +32,18 @@ const TOLERANCE_OF_COMPILER: f64 = 0.25;
 const WRITE_VARIABLE: &str = "ISOCHORE_WRITE_INSTRUCTIONS";
 
 /// The loops; each is an ignored test below.
-const LOOPS: [&str; 7] =
-    ["distance_grid", "advect_analytic", "advect_sampled", "split", "self_intersection", "read_obj", "frames"];
+const LOOPS: [&str; 10] = [
+    "distance_grid",
+    "advect_analytic",
+    "advect_sampled",
+    "split",
+    "self_intersection",
+    "session_moves",
+    "read_obj",
+    "read_glb",
+    "read_ply",
+    "frames",
+];
 
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Baseline {
@@ -138,12 +153,58 @@ fn self_intersection() {
     count(|| SelfIntersections::of(&mesh, &Silent));
 }
 
+/// Ten moves of a brush over a ball, in whose reach edges are split, collapsed and flipped.
+#[test]
+#[ignore = "counted by another test"]
+fn session_moves() {
+    let shape = ToolShape::Sphere(Sphere { radius: 0.15 });
+    let brush = recipe::Tool { shape, support: 0.2, profile: recipe::Profile::Quintic, free_form: 0.0 };
+    let brush = Arc::new(SessionTool::new("brush", brush, &Meshes::new(), &Silent).expect("a ball"));
+    let refine = InteractiveRefinement { longest: Some(0.03), ..InteractiveRefinement::default() };
+    let mut session = Session::open(primitives::icosphere(1.0, 5), SessionOptions::default()).expect("a ball");
+    session.begin_stroke(&brush, StrokeOptions { refine: Some(refine) }).expect("no stroke before");
+    let mut inserted = 0;
+    let mut travel = |moves: Range<u8>| {
+        for step in moves.map(f64::from) {
+            let pose = Pose::at(DVec3::new(0.01 * step, 0.0, 1.2 - 0.005 * step));
+            inserted += session.move_to(&pose, step / 60.0).expect("a short way").inserted_vertices;
+        }
+    };
+    travel(0..10);
+    count(|| travel(10..20));
+    assert!(inserted > 100, "{inserted}");
+}
+
+/// Counts the reading of a file of this name, with texture coordinates and normals.
+fn read(name: &str) {
+    let path = scratch().join(name);
+    let mut mesh = scan(4);
+    let normals: Vec<Vec3> = mesh.vertex_normals().into_iter().map(DVec3::as_vec3).collect();
+    let corners = || mesh.triangles.iter().map(|triangle| triangle.map(|vertex| normals[vertex as usize]));
+    mesh.corner.uvs = vec![corners().map(|corners| corners.map(Vec3::truncate)).collect()];
+    mesh.corner.normals = corners().collect();
+    io::write(&path, &mesh).expect("the scratch folder can be written");
+    count(|| io::read(&path));
+}
+
 #[test]
 #[ignore = "counted by another test"]
 fn read_obj() {
     let path = scratch().join("instructions.obj");
     io::write(&path, &scan(4)).expect("the scratch folder can be written");
     count(|| io::read(&path));
+}
+
+#[test]
+#[ignore = "counted by another test"]
+fn read_glb() {
+    read("instructions.glb");
+}
+
+#[test]
+#[ignore = "counted by another test"]
+fn read_ply() {
+    read("instructions.ply");
 }
 
 #[test]
