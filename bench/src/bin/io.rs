@@ -108,7 +108,7 @@ fn compare_formats(mesh: &TriMesh, with: &str, formats: &[(Format, &str)], peers
         let path = scratch().join("io").with_extension(ending);
         let write = |path: &Path| {
             let file = File::create(path).expect("the scratch folder can be written");
-            let mut file = BufWriter::with_capacity(1 << 20, file);
+            let mut file = BufWriter::new(file);
             io::write_to(format, mesh, &mut file).expect("the mesh is sound");
         };
         write(&path);

@@ -154,7 +154,8 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
     // Asked first, because the error of a missing folder would speak of the temporary file in it.
     std::fs::metadata(folder).map_err(failed)?;
     let file = temporary_file(folder).map_err(failed)?;
-    let mut buffered = std::io::BufWriter::with_capacity(1 << 20, file.as_file());
+    // A small buffer, past which go the larger pieces that most formats gather: another copy would take as long as they do.
+    let mut buffered = std::io::BufWriter::new(file.as_file());
     write_format(format, mesh, &mut buffered).map_err(failed)?;
     buffered.flush().map_err(failed)?;
     drop(buffered);
