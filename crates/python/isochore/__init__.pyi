@@ -161,8 +161,8 @@ class Mesh:
         """Square model units."""
 
     @property
-    def bounds(self) -> list[list[float]]:
-        """Smallest and largest x, y, z, model units."""
+    def bounds(self) -> NDArray[np.float64]:
+        """(2, 3), smallest and largest x, y, z, model units."""
 
     @property
     def is_closed(self) -> bool:

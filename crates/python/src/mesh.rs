@@ -8,14 +8,14 @@ use isochore_mesh::{
     ClosedMesh, SelfIntersections, SkinTable, TriMesh,
     io::{self, Format, SplitVertices},
 };
-use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::{
     prelude::*,
     types::{PyBytes, PyType},
 };
 
 use crate::{
-    arrays::{contiguous, points, triangles, view},
+    arrays::{contiguous, points, points_to_array, triangles, view},
     attributes,
     error::Failure,
     pickled::PickledMesh,
@@ -202,9 +202,9 @@ impl Mesh {
     }
 
     #[getter]
-    fn bounds(&self, py: Python<'_>) -> [[f64; 3]; 2] {
+    fn bounds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let bounds = py.detach(|| self.mesh.bounds());
-        [bounds.min.to_array(), bounds.max.to_array()]
+        points_to_array(py, vec![bounds.min, bounds.max])
     }
 
     #[getter]

@@ -33,7 +33,7 @@ def test_measures(cube):
     assert cube.is_closed
     assert cube.volume == pytest.approx(1, abs=1e-15)
     assert cube.area == pytest.approx(6, abs=1e-14)
-    assert cube.bounds == [[-0.5] * 3, [0.5] * 3]
+    assert np.array_equal(cube.bounds, [[-0.5] * 3, [0.5] * 3])
     assert cube.self_intersections().size == 0
 
 
