@@ -110,15 +110,9 @@ impl Bvh {
     ) -> (Self, T) {
         let frame = UnitFrame::around(bounds);
         let positions: Vec<DVec3> = positions.par_iter().map(|&position| frame.inward(position)).collect();
-        let groups = Groups::new(&positions, triangles, clustering as u32);
-        let ((nodes, order, depth), done) = rayon::join(
-            || {
-                let (nodes, order) = groups.clustered();
-                let depth = depth(&nodes);
-                (nodes, order, depth)
-            },
-            meanwhile,
-        );
+        let mut groups = Groups::new(&positions, triangles, clustering as u32);
+        let ((nodes, in_order), done) = rayon::join(|| groups.clustered(), meanwhile);
+        let (depth, order) = rayon::join(|| depth(&nodes), || groups.order(&in_order));
         let triangles = order.par_iter().map(|&triangle| triangles[triangle as usize]).collect();
         (Self { bounds, frame, depth, nodes, order, triangles, positions }, done)
     }

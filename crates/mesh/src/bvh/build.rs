@@ -1,5 +1,6 @@
 //! The nodes of a hierarchy: groups of triangles along a space-filling curve, and above them what `obvhs` clusters.
 
+use std::mem::take;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3A};
@@ -50,16 +51,27 @@ impl Groups {
         Self { placed, leaves: leaves.concat() }
     }
 
-    /// The nodes over one triangle or more, in preorder with children beside each other, and the triangles in the order of the leaves.
+    /// The nodes over one triangle or more, in preorder with children beside each other, and the groups in the order of the leaves.
     /// One thread does all of it.
-    pub(super) fn clustered(self) -> (Vec<Node>, Vec<u32>) {
+    pub(super) fn clustered(&mut self) -> (Vec<Node>, Vec<Range<u32>>) {
         let bounds = self.leaves.iter().fold(Aabb::empty(), |bounds, leaf| bounds.union(leaf.aabb()));
         // The convenience functions around this one read the clock, which WebAssembly has not.
         let mut builder = PlocBuilder::new();
-        builder.current_nodes = self.leaves;
+        builder.current_nodes = take(&mut self.leaves);
         let mut tree = Bvh2::default();
         builder.build_ploc_from_leaves::<NEIGHBORS, false>(&mut tree, bounds, SortPrecision::U64, QUICK_ROUNDS);
-        in_preorder(&tree.nodes, &self.placed)
+        in_preorder(&tree.nodes)
+    }
+
+    /// The triangles of these groups.
+    pub(super) fn order(&self, groups: &[Range<u32>]) -> Vec<u32> {
+        let pieces: Vec<Vec<u32>> = (groups.par_chunks(TASK))
+            .map(|groups| {
+                let placed = groups.iter().flat_map(|group| &self.placed[group.start as usize..group.end as usize]);
+                placed.map(|placed| placed.triangle).collect()
+            })
+            .collect();
+        pieces.concat()
     }
 }
 
@@ -102,8 +114,8 @@ fn outward_box(placed: &[Placed], points: &[[f32; 3]], triangles: &[[u32; 3]]) -
 }
 
 /// The nodes of a clustering, which has its root first and children behind their parents, cut where few enough triangles for a
-/// leaf remain.
-fn in_preorder(tree: &[Bvh2Node], placed: &[Placed]) -> (Vec<Node>, Vec<u32>) {
+/// leaf remain; and the groups below them in the same order.
+fn in_preorder(tree: &[Bvh2Node]) -> (Vec<Node>, Vec<Range<u32>>) {
     let mut below: Vec<u32> = tree.iter().map(|node| node.prim_count).collect();
     for (index, node) in tree.iter().enumerate().rev() {
         if !node.is_leaf() {
@@ -114,7 +126,8 @@ fn in_preorder(tree: &[Bvh2Node], placed: &[Placed]) -> (Vec<Node>, Vec<u32>) {
         let aabb = tree[source as usize].aabb();
         Node { min: aabb.min.to_array(), max: aabb.max.to_array(), first: 0, count: below[source as usize] }
     };
-    let mut order = in_huge_pages(Vec::with_capacity(placed.len()));
+    let mut groups = in_huge_pages(Vec::with_capacity(tree.len() / 2 + 1));
+    let mut slot = 0;
     let mut nodes = in_huge_pages(Vec::with_capacity(tree.len()));
     nodes.push(node(0));
     let mut pending = vec![(0, 0)];
@@ -122,12 +135,13 @@ fn in_preorder(tree: &[Bvh2Node], placed: &[Placed]) -> (Vec<Node>, Vec<u32>) {
     while let Some((source, place)) = pending.pop() {
         let children = tree[source as usize].first_index;
         if nodes[place].is_leaf() {
-            nodes[place].first = order.len() as u32;
+            nodes[place].first = slot;
+            slot += nodes[place].count;
             leaf.push(source);
             while let Some(part) = leaf.pop() {
                 let Bvh2Node { first_index: first, prim_count: count, .. } = tree[part as usize];
                 if count > 0 {
-                    order.extend(placed[first as usize..(first + count) as usize].iter().map(|placed| placed.triangle));
+                    groups.push(first..first + count);
                 } else {
                     leaf.extend([first + 1, first]);
                 }
@@ -139,5 +153,5 @@ fn in_preorder(tree: &[Bvh2Node], placed: &[Placed]) -> (Vec<Node>, Vec<u32>) {
             pending.extend([(children + 1, first + 1), (children, first)]);
         }
     }
-    (nodes, order)
+    (nodes, groups)
 }

@@ -30,7 +30,8 @@ proptest! {
     #[test]
     fn gradient_is_the_difference_quotient(p in point()) {
         // Central differences: truncation 1e-5² times a third derivative that is at most about 1/d² near medial surfaces, and
-        // rounding 1e-16/1e-5. Steps that straddle a medial surface are recognized by the one-sided quotients that disagree.
+        // rounding 1e-16/1e-5. Steps that straddle a medial surface are recognized by the one-sided quotients that disagree. Where
+        // the curvature jumps, as from a face to a rounded edge, the quotient is off by half as much as these disagree at most.
         const STEP: f64 = 1e-5;
         for shape in shapes() {
             let (value, gradient) = shape.sample(p);
@@ -38,9 +39,13 @@ proptest! {
             for axis in 0..3 {
                 let step = DVec3::AXES[axis] * STEP;
                 let (forward, backward) = (shape.sample(p + step).0 - value, value - shape.sample(p - step).0);
-                if (forward - backward).abs() < 1e-3 * STEP {
-                    let quotient = 0.5 * (forward + backward) / STEP;
-                    prop_assert!((gradient[axis] - quotient).abs() < 1e-5, "{shape:?} axis {axis}: {gradient} {quotient}");
+                let disagreement = (forward - backward).abs() / STEP;
+                if disagreement < 1e-3 {
+                    let (quotient, tolerance) = (0.5 * (forward + backward) / STEP, 1e-5 + 0.5 * disagreement);
+                    prop_assert!(
+                        (gradient[axis] - quotient).abs() < tolerance,
+                        "{shape:?} axis {axis}: {gradient} {quotient}"
+                    );
                 }
             }
         }
