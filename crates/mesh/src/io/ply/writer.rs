@@ -7,8 +7,8 @@ use glam::DVec4;
 use crate::TriMesh;
 use crate::io::text::{FLUSH_AT, flush};
 
-/// Writes binary little-endian PLY with doubles, and normals and texture coordinates in floats, as meshes have them. Colors are bytes where bytes say the
-/// same, else floats.
+/// Writes binary little-endian PLY with doubles, and normals and texture coordinates in floats, as meshes have them. Colors are bytes
+/// where bytes say the same, else floats.
 ///
 /// Of several UV sets the first is written; skin, materials and textures have no place in the format.
 pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
