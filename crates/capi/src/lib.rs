@@ -29,7 +29,8 @@ pub use session::{
     isochore_session_end_stroke, isochore_session_export, isochore_session_free, isochore_session_freeze_edges,
     isochore_session_history, isochore_session_log, isochore_session_move_to, isochore_session_moved_volume,
     isochore_session_new, isochore_session_origin, isochore_session_pick, isochore_session_preview,
-    isochore_session_redo, isochore_session_take_changes, isochore_session_undo, isochore_session_vertex_map,
-    isochore_session_vertices, isochore_session_vertices_in_reach, isochore_session_volume,
+    isochore_session_redo, isochore_session_take_changes, isochore_session_undo, isochore_session_uvs,
+    isochore_session_vertex_map, isochore_session_vertices, isochore_session_vertices_in_reach,
+    isochore_session_volume,
 };
 pub use tool::{Tool, isochore_tool_free, isochore_tool_new};

@@ -80,7 +80,8 @@ pub struct StrokeOptions {
     pub keep_count: usize,
 }
 
-/// Buffers for a renderer, in place: the session's own memory, until the session changes.
+/// Buffers for a renderer, in place: the session's own memory, until the session changes. Texture coordinates are apart, by set:
+/// `isochore_session_uvs`.
 ///
 /// A render vertex is a vertex as the triangles on one side of a seam see it. Removed triangles are three times zero.
 #[repr(C)]
@@ -94,8 +95,6 @@ pub struct Buffers {
     pub positions: *const f32,
     /// Unit normal of each render vertex.
     pub normals: *const f32,
-    /// u, v of each render vertex, the first set; NULL where the mesh has none.
-    pub uvs: *const f32,
     /// Linear red, green, blue, alpha of each render vertex; NULL where the mesh has none.
     pub colors: *const f32,
     /// Number of triangles, those removed included.
@@ -320,19 +319,37 @@ pub unsafe extern "C" fn isochore_session_buffers(session: *const Session, buffe
     guarded(|| {
         // SAFETY: as the caller promises.
         let now = unsafe { reference("session", session) }?.session.buffers();
-        let or_null = |values: &[f32]| if values.is_empty() { std::ptr::null() } else { values.as_ptr() };
+        let colors = now.colors.as_flattened();
         let place = Buffers {
             generation: now.generation,
             vertex_count: now.positions.len(),
             positions: now.positions.as_flattened().as_ptr(),
             normals: now.normals.as_flattened().as_ptr(),
-            uvs: now.uvs.first().map_or(std::ptr::null(), |uvs| or_null(uvs.as_flattened())),
-            colors: or_null(now.colors.as_flattened()),
+            colors: if colors.is_empty() { std::ptr::null() } else { colors.as_ptr() },
             triangle_count: now.indices.len(),
             indices: now.indices.as_flattened().as_ptr(),
         };
         // SAFETY: as the caller promises.
         unsafe { put("buffers", buffers, place) }
+    })
+}
+
+/// Tells where the texture coordinates of a set lie, and how many numbers they are: two a render vertex, none where there is no such
+/// set. They are buffers as the others are, and the generation counts for them too.
+///
+/// # Safety
+/// `session` is a handle; `uvs` and `count` can be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn isochore_session_uvs(
+    session: *const Session,
+    set: usize,
+    uvs: *mut *const f32,
+    count: *mut usize,
+) -> Status {
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe {
+        let sets = reference("session", session)?.session.buffers().uvs;
+        put_slice("uvs", uvs, count, sets.get(set).map_or(&[], |uvs| uvs.as_flattened()))
     })
 }
 

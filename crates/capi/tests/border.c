@@ -166,7 +166,7 @@ static void sessions(void) {
     CHECK(isochore_session_volume(session, &volume) == ISOCHORE_STATUS_OK);
     CHECK(fabs(volume - 1.0 / 6 - receipt.volume_flow) < 1e-14);
     CHECK(isochore_session_buffers(session, &buffers) == ISOCHORE_STATUS_OK);
-    CHECK(buffers.vertex_count == 4 && buffers.triangle_count == 4 && buffers.uvs == NULL && buffers.colors == NULL);
+    CHECK(buffers.vertex_count == 4 && buffers.triangle_count == 4 && buffers.colors == NULL);
     CHECK(buffers.positions[11] != 1);
     CHECK(isochore_session_pick(session, above, down, &hit, &done) == ISOCHORE_STATUS_OK && done && hit.distance > 3);
     CHECK(fabs(hit.weights[0] + hit.weights[1] + hit.weights[2] - 1) < 1e-15);
@@ -383,6 +383,8 @@ static void attributes(const char *path) {
     for (int i = 0; i < 16; i++) colors[i] = i / 16.0;
     for (int i = 0; i < 36; i++) normals[i] = i % 3 == 2;
     IsochoreMesh *mesh = tetrahedron(), *refined = NULL;
+    IsochoreSession *session = NULL;
+    IsochoreBuffers buffers;
     const double *found = NULL;
     const float *coordinates = NULL, *directions = NULL;
     const uint32_t *materials = NULL;
@@ -415,6 +417,14 @@ static void attributes(const char *path) {
     CHECK(isochore_mesh_vertex_colors(mesh, &found, &count) == ISOCHORE_STATUS_OK);
     CHECK(count == 16 && memcmp(found, colors, sizeof colors) == 0);
     CHECK(isochore_mesh_material_name(mesh, 2, &name) == ISOCHORE_STATUS_ARGUMENT);
+
+    CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_buffers(session, &buffers) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_uvs(session, 2, &coordinates, &count) == ISOCHORE_STATUS_OK && count == 0);
+    CHECK(isochore_session_uvs(session, 1, &coordinates, &count) == ISOCHORE_STATUS_OK);
+    CHECK(count == 2 * buffers.vertex_count && buffers.triangle_count == 4);
+    for (int i = 0; i < 12; i++) CHECK(memcmp(coordinates + 2 * buffers.indices[i], uvs + 2 * i, 2 * sizeof *uvs) == 0);
+    isochore_session_free(session);
 
     refined = refined_by_a_press(mesh, true);
     CHECK(isochore_mesh_write(refined, path) == ISOCHORE_STATUS_OK);
