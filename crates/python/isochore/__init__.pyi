@@ -265,7 +265,8 @@ class Session:
 
         step: travel of the fastest point of the tool's surface in one time step, as a share of the support or of half the tool's
         shortest extent, whichever is less; at most 1.
-        undo_bytes: what undo and redo may hold; beyond, the oldest strokes are forgotten. normals: how triangles are weighted in vertex normals, by "area" or "angle".
+        undo_bytes: what undo and redo may hold; beyond, the oldest strokes are forgotten. normals: how triangles are weighted in vertex
+        normals, by "area" or "angle".
         mask: a weight for each vertex, (V,), from 0, free, to 1, held; or what a recipe says under `mask`, {"pins": [...], "mirror": [...],
         "vertices": weights, "fade": length}. Vertices that are held keep their bits.
         lock: whether each stroke ends with the volume of the mesh as opened, by a small displacement of what it has moved.

@@ -324,7 +324,7 @@ impl Session {
 
     /// By vertex of the mesh as opened, the vertex that stands in its place.
     fn vertex_map<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        self.lock().vertex_map().into_pyarray(py).into_any()
+        self.ask(py, session::Session::vertex_map).into_pyarray(py).into_any()
     }
 
     /// Numbers of the vertices that the render vertices belong to.

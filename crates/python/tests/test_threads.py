@@ -66,6 +66,7 @@ CALLS = {
     "origins": lambda ball, session, brush: session.origins(),
     "vertices_of_render_vertices": lambda ball, session, brush: session.vertices_of_render_vertices(),
     "vertices_in_reach": lambda ball, session, brush: session.vertices_in_reach(brush, [0, 0, 0]),
+    "vertex_map": lambda ball, session, brush: session.vertex_map(),
     "preview": lambda ball, session, brush: session.preview(brush, [0, 0, 0], [0, 0, 0.1], per_side=24),
     "export": lambda ball, session, brush: session.export(),
     "open": lambda ball, session, brush: isochore.Session(ball),
