@@ -16,6 +16,14 @@ pub trait Monitor: Sync {
     /// [`Cancelled`] when [`is_cancelled`](Self::is_cancelled) says so.
     fn check(&self, stage: &'static str, done: f64) -> Result<(), Cancelled> {
         self.update(stage, done);
+        self.check_cancelled()
+    }
+
+    /// An error if the work is to stop.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when [`is_cancelled`](Self::is_cancelled) says so.
+    fn check_cancelled(&self) -> Result<(), Cancelled> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 }

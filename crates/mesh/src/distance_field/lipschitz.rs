@@ -49,7 +49,7 @@ pub(super) fn lipschitz(grid: &Grid, coefficients: &[f32], monitor: &dyn Monitor
     bounds.par_chunks_mut(layer).enumerate().try_for_each(|(k, bounds)| {
         let steepest = bound_layer(&coefficients[k * layer..], nx, bounds);
         refine(k * layer + steepest);
-        if monitor.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+        monitor.check_cancelled()
     })?;
     bounds.par_iter().enumerate().for_each(|(cell, &bound)| {
         if f64::from(bound) > f64::from_bits(known.load(Relaxed)) {

@@ -33,9 +33,7 @@ pub(super) fn unsigned(
         let slab = Slab { search, bvh, grid, band, layer: number * PACKET[2] };
         let mut last_strip = vec![[NOTHING; LANES]; nx.div_ceil(PACKET[0])];
         for strip in 0..ny.div_ceil(PACKET[1]) {
-            if monitor.is_cancelled() {
-                return Err(Cancelled);
-            }
+            monitor.check_cancelled()?;
             sample_strip(&slab, strip, samples, &mut last_strip);
         }
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::patches::Patches;
 use super::row_crossings::RowCrossings;
 use super::{DistanceFieldError, Grid};
-use crate::{Bvh, Cancelled, Monitor, TriMesh, WindingNumber};
+use crate::{Bvh, Monitor, TriMesh, WindingNumber};
 
 /// Nodes of the hierarchy between two looks at the monitor.
 const NODES_AT_ONCE: usize = 1 << 13;
@@ -43,7 +43,7 @@ pub(super) fn negate_inside(
                 rows.add(&bvh.corners(slot), &bvh.triangles()[slot as usize]);
             }
         }
-        if monitor.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+        monitor.check_cancelled()
     })?;
     if open_edges.is_empty() {
         let numbers = rows.into_winding_numbers();
@@ -89,13 +89,10 @@ pub(super) fn negate_inside(
                     }
                 }
             }
-            if monitor.is_cancelled() {
-                return Err(Cancelled);
-            }
+            monitor.check_cancelled()?;
         }
         Ok(())
-    })?;
-    Ok(())
+    })
 }
 
 fn negate_if(sample: &mut f32, is_inside: bool) {

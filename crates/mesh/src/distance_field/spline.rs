@@ -39,7 +39,7 @@ pub(super) fn coefficients(samples: &[f32], dims: [usize; 3], monitor: &dyn Moni
             }
         }
         filter(work, nx);
-        if monitor.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+        monitor.check_cancelled()
     })?;
     monitor.check("spline", 0.25)?;
     // Along z the lines cross all layers: each task takes those of one row of x, copied out and back.
