@@ -60,7 +60,7 @@ pub fn crossing_scans(subdivisions: u32) -> TriMesh {
 fn scans_are_closed_and_do_not_cross() {
     for mesh in [scan(5), scan_of_cube(29), scan_of_cube(51)] {
         assert!(isochore_mesh::ClosedMesh::new(&mesh).is_ok());
-        let crossings = isochore_mesh::SelfIntersections::of(&mesh, &isochore_mesh::Silent).unwrap();
+        let crossings = isochore_mesh::SelfIntersections::of(&mesh, &isochore_mesh::NoProgress).unwrap();
         assert!(crossings.is_empty(), "{:?}", crossings.triangles());
     }
 }

@@ -10,9 +10,9 @@ use std::{collections::BTreeMap, env, fs, ops::Range, path::Path, process::Comma
 use glam::{DVec3, Vec3};
 use isochore_bench::{on_one_core, scan, scratch};
 use isochore_curve::{FrameMethod, Spine, TrigonometricCurve, rotation_minimizing_frames};
-use isochore_field::{Move, Pose, Profile, Stroke, Tool, flow_points};
+use isochore_field::{Move, Pose, Profile, Stroke, Tool, advect_points};
 use isochore_mesh::{
-    Capsule, Distance, DistanceField, DistanceFieldOptions, Padding, SelfIntersections, Silent, io, primitives,
+    Capsule, Distance, DistanceField, DistanceFieldOptions, NoProgress, Padding, SelfIntersections, io, primitives,
 };
 use isochore_sculpt::{
     Meshes,
@@ -113,7 +113,7 @@ fn advect(tool: Arc<dyn Distance>) {
     let tool = Arc::new(Tool::new(tool, 0.3, Profile::Quintic).expect("a support"));
     let way = vec![Pose::at(DVec3::new(0.0, 0.9, -0.2)), Pose::at(DVec3::new(0.0, 0.9, 0.2))];
     let stroke = Stroke::Move(Move::new(tool, way, 0.125).expect("a way"));
-    count(|| flow_points(&points, std::slice::from_ref(&stroke), &Silent));
+    count(|| advect_points(&points, std::slice::from_ref(&stroke), &NoProgress));
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn advect(tool: Arc<dyn Distance>) {
 fn distance_grid() {
     let mesh = scan(3);
     let options = DistanceFieldOptions { resolution: 24, ..DistanceFieldOptions::default() };
-    count(|| DistanceField::new(&mesh, &options, &Silent));
+    count(|| DistanceField::new(&mesh, &options, &NoProgress));
 }
 
 #[test]
@@ -136,21 +136,21 @@ fn advect_sampled() {
     let mesh = primitives::icosphere(0.4, 2);
     let options =
         DistanceFieldOptions { resolution: 16, padding: Padding::Reach(0.3), ..DistanceFieldOptions::default() };
-    advect(Arc::new(DistanceField::new(&mesh, &options, &Silent).expect("a sound mesh")));
+    advect(Arc::new(DistanceField::new(&mesh, &options, &NoProgress).expect("a sound mesh")));
 }
 
 #[test]
 #[ignore = "counted by another test"]
 fn split() {
     let mesh = scan(4);
-    count(|| mesh.split_to_length(0.02, 1_000_000, &Silent));
+    count(|| mesh.split_to_length(0.02, 1_000_000, &NoProgress));
 }
 
 #[test]
 #[ignore = "counted by another test"]
 fn self_intersection() {
     let mesh = scan(5);
-    count(|| SelfIntersections::of(&mesh, &Silent));
+    count(|| SelfIntersections::of(&mesh, &NoProgress));
 }
 
 /// Ten moves of a brush over a ball, in whose reach edges are split, collapsed and flipped.
@@ -159,7 +159,7 @@ fn self_intersection() {
 fn session_moves() {
     let shape = ToolShape::Sphere(Sphere { radius: 0.15 });
     let brush = recipe::Tool { shape, support: 0.2, profile: recipe::Profile::Quintic, free_form: 0.0 };
-    let brush = Arc::new(SessionTool::new("brush", brush, &Meshes::new(), &Silent).expect("a ball"));
+    let brush = Arc::new(SessionTool::new("brush", brush, &Meshes::new(), &NoProgress).expect("a ball"));
     let refine = InteractiveRefinement { longest: Some(0.03), ..InteractiveRefinement::default() };
     let mut session = Session::open(primitives::icosphere(1.0, 5), SessionOptions::default()).expect("a ball");
     session.begin_stroke(&brush, StrokeOptions { refine: Some(refine) }).expect("no stroke before");

@@ -10,7 +10,7 @@ use std::{
 
 use glam::{DVec2, DVec3};
 use isochore_curve::{Frame, rotate_minimally, sweep, sweep_varying};
-use isochore_mesh::{GridMesh, Silent, TriMesh, io};
+use isochore_mesh::{GridMesh, NoProgress, TriMesh, io};
 use isochore_picture::{Camera, Options, Panel, render};
 use isochore_sculpt::{Meshes, Recipe, Scene, recipe::Format};
 
@@ -66,7 +66,7 @@ pub fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
     for name in recipe.mesh_names() {
         meshes.insert(name.to_owned(), io::read(recipes.join(name))?.into());
     }
-    Ok(Scene::build(&recipe, &meshes, &Silent)?)
+    Ok(Scene::build(&recipe, &meshes, &NoProgress)?)
 }
 
 /// The body that a closed `profile`, counter-clockwise, sweeps along `stations`: capped, or closed where `closes` says

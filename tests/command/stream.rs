@@ -3,7 +3,7 @@
 use std::fs;
 
 use glam::DVec3;
-use isochore_mesh::{Silent, io::PointStream, primitives};
+use isochore_mesh::{NoProgress, io::PointStream, primitives};
 use isochore_sculpt::{Meshes, Recipe, recipe::Format, replay_points};
 
 use crate::folder::{Folder, PRESS};
@@ -31,7 +31,7 @@ fn points() -> Vec<DVec3> {
 fn carried(name: &str) -> Vec<DVec3> {
     let recipe = Recipe::parse(&recipe(name), Format::Toml, &[]).unwrap();
     let placed: Vec<DVec3> = points().iter().map(|point| *point * 1.1).collect();
-    replay_points(&recipe, &Meshes::new(), &placed, &Silent).unwrap().points
+    replay_points(&recipe, &Meshes::new(), &placed, &NoProgress).unwrap().points
 }
 
 fn numpy_header(shape: &str, descr: &str) -> Vec<u8> {

@@ -3,9 +3,7 @@
 
 use glam::DVec3;
 use isochore_bench::{interleaved_medians, on_one_core, print_row};
-use isochore_curve::{
-    CURVES_ABREAST, FrameMethod, Spine, SpinesAbreast, TrigonometricCurve, rotation_minimizing_frames,
-};
+use isochore_curve::{BATCH_SIZE, FrameMethod, Spine, SpineBatch, TrigonometricCurve, rotation_minimizing_frames};
 
 /// Samples that stay in the second-level cache, and samples that do not.
 const SEGMENTS: [usize; 2] = [1_000, 100_000];
@@ -24,7 +22,7 @@ fn measure(segments: usize) {
     let points: Vec<[f64; 3]> = (0..=segments).map(|i| spine.point(i).to_array()).collect();
     let tangents: Vec<[f64; 3]> = (0..=segments).map(|i| spine.tangent(i).to_array()).collect();
     let mut plain_frames = vec![[[0.0; 3]; 3]; segments + 1];
-    let abreast = SpinesAbreast::new(&vec![spine.clone(); CURVES_ABREAST]).expect("equal curves");
+    let abreast = SpineBatch::new(&vec![spine.clone(); BATCH_SIZE]).expect("equal curves");
     let mut references = abreast.references();
     // About a million frames a round, whatever the length.
     let repeats = 1_000_000 / segments;
@@ -48,8 +46,8 @@ fn measure(segments: usize) {
         },
         &mut || {
             for _ in 0..repeats {
-                let starts = [-DVec3::X; CURVES_ABREAST];
-                std::hint::black_box(&abreast).carry(&starts, &mut references).expect("a normal vector");
+                let starts = [-DVec3::X; BATCH_SIZE];
+                std::hint::black_box(&abreast).propagate(&starts, &mut references).expect("a normal vector");
                 std::hint::black_box(&mut references);
             }
         },

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use glam::DVec3;
 use isochore_bench::{interleaved_medians, on_one_core, print_row};
 use isochore_field::{
-    DeformOptions, Move, Pose, Profile, RefineOptions, Stroke, Tool, deform, flow_points, rotation_from_vector,
+    DeformOptions, Move, Pose, Profile, RefineOptions, Stroke, Tool, advect_points, deform, rotation_from_vector,
 };
-use isochore_mesh::{Capsule, Distance, Silent, Sphere, primitives};
+use isochore_mesh::{Capsule, Distance, NoProgress, Sphere, primitives};
 
 fn main() {
     on_one_core(|| {
@@ -26,10 +26,10 @@ fn measure(name: &str, stroke: &Stroke, volume: f64) {
     let strokes = std::slice::from_ref(stroke);
     let refine = RefineOptions { volume, ..RefineOptions::default() };
     let options = DeformOptions { refine: Some(refine), lock: false };
-    let run = || deform(&object, strokes, &options, &Silent).expect("nothing cancels");
+    let run = || deform(&object, strokes, &options, &NoProgress).expect("nothing cancels");
     let result = run();
     let seconds = interleaved_medians(&mut [&mut || drop(std::hint::black_box(run())), &mut || {
-        drop(std::hint::black_box(flow_points(&result.rest.positions, strokes, &Silent)))
+        drop(std::hint::black_box(advect_points(&result.rest.positions, strokes, &NoProgress)))
     }]);
     let drift = result.mesh.volume() / object.volume() - 1.0;
     print_row([

@@ -8,7 +8,7 @@ use std::{fs, path::Path};
 use isochore_bench::{
     Comparison, PythonPeer, cpu_seconds, crossing_scans, give_mesh, median, on_one_core, scan, scratch,
 };
-use isochore_mesh::{SelfIntersections, Silent, TriMesh, io};
+use isochore_mesh::{NoProgress, SelfIntersections, TriMesh, io};
 use serde_json::json;
 
 /// Rounds after one that warms up.
@@ -44,7 +44,7 @@ fn compare(mesh: &TriMesh, name: &str) {
     if let Ok(started) = &mut peer {
         give_mesh(started, mesh).expect("the peer takes a mesh");
     }
-    let found = SelfIntersections::of(mesh, &Silent).expect("a mesh that can be searched");
+    let found = SelfIntersections::of(mesh, &NoProgress).expect("a mesh that can be searched");
     let mut is_found = vec![0_u8; mesh.triangles.len()];
     found.triangles().iter().for_each(|&triangle| is_found[triangle as usize] = 1);
     let output = scratch().join("surface-crossings.raw");
@@ -54,7 +54,7 @@ fn compare(mesh: &TriMesh, name: &str) {
         let mut missing = None;
         for round in 0..=ROUNDS {
             let begin = cpu_seconds();
-            drop(std::hint::black_box(SelfIntersections::of(mesh, &Silent)));
+            drop(std::hint::black_box(SelfIntersections::of(mesh, &NoProgress)));
             let seconds = cpu_seconds() - begin;
             let answer = peer.as_mut().map_err(|error| error.clone());
             match answer.and_then(|peer| peer.seconds(&json!({ "job": job, "output": output }))) {

@@ -7,7 +7,7 @@ use std::{f64::consts::FRAC_PI_4, sync::Arc, time::Instant};
 use glam::DVec3;
 use isochore_bench::{cpu_seconds, median, print_row};
 use isochore_field::{Pose, rotation_from_vector};
-use isochore_mesh::{Silent, TriMesh, primitives};
+use isochore_mesh::{NoProgress, TriMesh, primitives};
 use isochore_sculpt::{
     Meshes,
     recipe::{Profile, Sphere, Tool, ToolShape},
@@ -119,7 +119,7 @@ impl Run {
         let mut session = Session::open(mesh, SessionOptions::default()).expect("a sphere");
         let shape = ToolShape::Sphere(Sphere { radius: 0.5 * reach });
         let tool = Tool { shape, support: 0.5 * reach, profile: Profile::Quintic, free_form: 0.0 };
-        let tool = Arc::new(SessionTool::new("brush", tool, &Meshes::new(), &Silent).expect("a ball"));
+        let tool = Arc::new(SessionTool::new("brush", tool, &Meshes::new(), &NoProgress).expect("a ball"));
         let refine = InteractiveRefinement { longest: Some(longest), ..InteractiveRefinement::default() };
         session.begin_stroke(&tool, StrokeOptions { refine: Some(refine) }).expect("no stroke before");
         let cpu = cpu_seconds();

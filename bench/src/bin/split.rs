@@ -4,7 +4,7 @@
 #![expect(clippy::print_stderr, reason = "says why a peer is missing")]
 
 use isochore_bench::{Comparison, PythonPeer, cpu_seconds, give_mesh, median, on_one_core, scan};
-use isochore_mesh::{Silent, Subdivision, TriMesh, io};
+use isochore_mesh::{NoProgress, Subdivision, TriMesh, io};
 use serde_json::json;
 
 /// Rounds after one that warms up.
@@ -84,5 +84,5 @@ fn length_for(mesh: &TriMesh, guess: f64, count: f64) -> f64 {
 }
 
 fn split(mesh: &TriMesh, longest: f64) -> Subdivision {
-    mesh.split_to_length(longest, usize::MAX, &Silent).expect("a sound mesh")
+    mesh.split_to_length(longest, usize::MAX, &NoProgress).expect("a sound mesh")
 }

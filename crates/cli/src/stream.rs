@@ -110,7 +110,7 @@ fn carry(
         }
         let advect_start = Instant::now();
         points = PointFlow::place(&job.recipe, points);
-        let carried = flow.carry(&points, &OfOneChunk(console)).map_err(|error| job.failed(error))?;
+        let carried = flow.advect(&points, &OfOneChunk(console)).map_err(|error| job.failed(error))?;
         report.add(&points, &carried);
         let write_start = Instant::now();
         stream.write_chunk(&carried, writer).map_err(&name)?;

@@ -64,9 +64,9 @@
 //! that have just split beyond the center of curvature; [`ClosestPoint::closest`] then still returns one of them.
 //! [`reach`] is an estimate from above.
 
-mod abreast;
 mod analytic;
 mod arc_length;
+mod batch;
 mod bernstein;
 mod bezier;
 mod closest_point;
@@ -90,9 +90,9 @@ mod tangents;
 mod tangents_only;
 mod twist;
 
-pub use abreast::{AbreastError, CURVES_ABREAST, ReferencesAbreast, SpinesAbreast};
 pub use analytic::{FunctionCurve, TrigonometricCurve, TrigonometricTerm};
 pub use arc_length::{ArcLength, length, total_curvature, total_squared_curvature, total_torsion};
+pub use batch::{BATCH_SIZE, BatchError, ReferenceBatch, SpineBatch};
 pub use bezier::Bezier;
 pub use closest_point::{ClosestPoint, CurveProjection};
 pub use curve::{Curve, CurveJet};
@@ -119,5 +119,5 @@ pub use tangents::{TangentError, TangentRule};
 pub use tangents_only::chord_from_tangents;
 pub use twist::{
     TwistConstraint, TwistError, TwistLaw, TwistedFrames, close_frames, closing_angle, meet_constraints,
-    meet_end_direction, spread, total_angular_speed, total_squared_angular_speed, twist_shares,
+    meet_end_direction, spread, total_angular_speed, total_squared_angular_speed, twist_fractions,
 };

@@ -66,7 +66,7 @@ pub enum TwistError {
 }
 
 /// Share of the whole twist that each station has, from 0 at the first to 1 at the last.
-pub fn twist_shares(spine: &Spine, law: TwistLaw) -> Vec<f64> {
+pub fn twist_fractions(spine: &Spine, law: TwistLaw) -> Vec<f64> {
     let turning = spine.turning_angles();
     let chords = spine.chords();
     let steps = if law == TwistLaw::Curvature && turning.iter().sum::<f64>() > STRAIGHT { turning } else { chords };
@@ -126,7 +126,7 @@ pub fn meet_end_direction(
 /// # Panics
 /// If there is not one frame a station.
 pub fn spread(spine: &Spine, frames: &[Frame], total: f64, law: TwistLaw) -> TwistedFrames {
-    turn(frames, twist_shares(spine, law).iter().map(|share| total * share).collect())
+    turn(frames, twist_fractions(spine, law).iter().map(|share| total * share).collect())
 }
 
 /// Twists rotation-minimizing `frames` so that each constraint is met, by the least rotation between neighboring ones.
@@ -147,7 +147,7 @@ pub fn meet_constraints(
 ) -> Result<TwistedFrames, TwistError> {
     let segments = spine.segments();
     let last_station = if spine.is_closed() { segments - 1 } else { segments };
-    let shares = twist_shares(spine, law);
+    let shares = twist_fractions(spine, law);
     let mut angles: Vec<f64> = Vec::new();
     for (index, constraint) in constraints.iter().enumerate() {
         let is_in_order = index == 0 || constraint.station > constraints[index - 1].station;

@@ -8,7 +8,7 @@ use isochore_curve::{
     Curve, DegenerateSegment, Frame, FrameMethod, Spine, TrigonometricCurve, TwistConstraint, TwistError, TwistLaw,
     close_frames, closing_angle, exact_frames, length, meet_constraints, meet_end_direction,
     rotation_minimizing_frames, spread, total_angular_speed, total_curvature, total_squared_angular_speed,
-    total_squared_curvature, twist_shares, uniform_parameters,
+    total_squared_curvature, twist_fractions, uniform_parameters,
 };
 
 fn reflected(curve: &impl Curve, segments: usize) -> (Spine, Vec<Frame>) {
@@ -116,9 +116,9 @@ fn end_directions_are_met() {
 fn straight_spines_take_the_curvature_law_by_arc_length() {
     let points: Vec<DVec3> = [0.0, 1.0, 4.0].map(|x| DVec3::X * x).to_vec();
     let spine = Spine::new(points, vec![DVec3::X; 3], false).unwrap();
-    assert_eq!(twist_shares(&spine, TwistLaw::Curvature), [0.0, 0.25, 1.0]);
+    assert_eq!(twist_fractions(&spine, TwistLaw::Curvature), [0.0, 0.25, 1.0]);
     let nowhere = Spine::new(vec![DVec3::X; 3], vec![DVec3::X; 3], false).unwrap();
-    assert_eq!(twist_shares(&nowhere, TwistLaw::ArcLength), [0.0, 0.5, 1.0]);
+    assert_eq!(twist_fractions(&nowhere, TwistLaw::ArcLength), [0.0, 0.5, 1.0]);
 }
 
 fn constraints_at(stations: &[usize], directions: &[DVec3]) -> Vec<TwistConstraint> {
@@ -142,7 +142,7 @@ fn six_constraints_are_met_and_the_frame_closes() {
     }
     assert!(twisted.stations[300].r.distance(twisted.stations[0].r) < 1e-13);
     // Linear in arc length between neighbors, also across the first station.
-    let shares = twist_shares(&spine, TwistLaw::ArcLength);
+    let shares = twist_fractions(&spine, TwistLaw::ArcLength);
     let rate = |i: usize| (twisted.angles[i + 1] - twisted.angles[i]) / (shares[i + 1] - shares[i]);
     assert!((rate(10) - rate(50)).abs() < 1e-9 && (rate(2) - rate(290)).abs() < 1e-9);
 }

@@ -253,11 +253,11 @@ fn apply(
         None => Refinement::default(),
     };
     let resolve_end = Instant::now();
-    let advance = mesh.advance(stroke, monitor)?;
+    let advected = mesh.advect(stroke, monitor)?;
     let advect_end = Instant::now();
     let known = mesh.image.len();
     let refined = refine(mesh, strokes, criteria, monitor)?;
-    let moved = advance.moved + count_different(&mesh.rest[known..], &mesh.image[known..]);
+    let moved = advected.moved + count_different(&mesh.rest[known..], &mesh.image[known..]);
     let end = Instant::now();
 
     receipt.seconds.advect += (advect_end - resolve_end).as_secs_f64();
@@ -272,7 +272,7 @@ fn apply(
         receipt,
         StrokeReceipt {
             seconds: (end - begin).as_secs_f64(),
-            evaluations: resolved.evaluations + advance.evaluations + refined.evaluations,
+            evaluations: resolved.evaluations + advected.evaluations + refined.evaluations,
             moved,
             inserted: resolved.inserted + refined.inserted,
             jacobian,

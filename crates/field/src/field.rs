@@ -52,7 +52,7 @@ pub trait MovingField: Debug + Send + Sync {
     fn approach_speed(&self) -> f64;
 
     /// Upper bound, over the whole time, on the speed of the field where it carries fully: what the time step is measured by.
-    fn carrying_speed(&self) -> f64;
+    fn core_speed(&self) -> f64;
 
     /// Length over which the field changes.
     fn feature_size(&self) -> f64;
@@ -71,7 +71,7 @@ pub struct FieldBlock {
     /// Its curl, the velocity.
     pub velocity: PointBlock,
     /// s, the share of the full motion: one in the core, zero beyond the support.
-    pub share: ScalarBlock,
+    pub weight: ScalarBlock,
     /// Above zero where the point is beyond the support: then a lower bound on the distance to it, and the velocity is exactly
     /// zero.
     pub clearance: [f64; LANES],
@@ -87,7 +87,7 @@ impl FieldBlock {
     pub const ZERO: Self = Self {
         potential: PointBlock::ZERO,
         velocity: PointBlock::ZERO,
-        share: ScalarBlock::ZERO,
+        weight: ScalarBlock::ZERO,
         clearance: [0.0; LANES],
         core: [NO_CORE; LANES],
     };
@@ -96,12 +96,12 @@ impl FieldBlock {
     pub fn scale(&mut self, factor: &ScalarBlock) {
         for lane in 0..LANES {
             let (value, gradient) = (factor.value[lane], factor.gradient.get(lane));
-            let share = self.share.gradient.get(lane) * value + gradient * self.share.value[lane];
+            let share = self.weight.gradient.get(lane) * value + gradient * self.weight.value[lane];
             self.velocity
                 .set(lane, curl_of_product(value, gradient, self.potential.get(lane), self.velocity.get(lane)));
             self.potential.set(lane, value * self.potential.get(lane));
-            self.share.value[lane] *= value;
-            self.share.gradient.set(lane, share);
+            self.weight.value[lane] *= value;
+            self.weight.gradient.set(lane, share);
             if value != 1.0 || gradient != DVec3::ZERO {
                 self.core[lane] = NO_CORE;
             }
@@ -112,8 +112,8 @@ impl FieldBlock {
     pub fn set_product(&mut self, lane: usize, share: f64, gradient: DVec3, potential: DVec3, curl: DVec3) {
         self.potential.set(lane, share * potential);
         self.velocity.set(lane, curl_of_product(share, gradient, potential, curl));
-        self.share.value[lane] = share;
-        self.share.gradient.set(lane, gradient);
+        self.weight.value[lane] = share;
+        self.weight.gradient.set(lane, gradient);
     }
 
     /// Sets one lane to a point beyond the support by at least `clearance`.

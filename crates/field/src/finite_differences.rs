@@ -37,12 +37,12 @@ pub(crate) fn deviation(field: &dyn Field, points: &[DVec3], step: f64) -> Devia
         let [dx, dy, dz] = derivative(|block| block.potential.get(0));
         let curl = DVec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x);
         let [dx, dy, dz] = derivative(|block| block.velocity.get(0));
-        let [share_x, share_y, share_z] = derivative(|block| DVec3::splat(block.share.value[0])).map(|share| share.x);
+        let [share_x, share_y, share_z] = derivative(|block| DVec3::splat(block.weight.value[0])).map(|share| share.x);
         let gradient = DVec3::new(share_x, share_y, share_z);
         Deviation {
             curl: worst.curl.max(curl.distance(center.velocity.get(0))),
             divergence: worst.divergence.max((dx.x + dy.y + dz.z).abs()),
-            gradient: worst.gradient.max(gradient.distance(center.share.gradient.get(0))),
+            gradient: worst.gradient.max(gradient.distance(center.weight.gradient.get(0))),
         }
     })
 }

@@ -16,19 +16,19 @@ pub(crate) const CHUNK: usize = 256;
 /// not depend on the number of threads nor on the order of the points.
 ///
 /// # Errors
-/// [`FlowError`].
-pub fn flow_points(points: &[DVec3], strokes: &[Stroke], monitor: &dyn Monitor) -> Result<Vec<DVec3>, FlowError> {
+/// [`AdvectError`].
+pub fn advect_points(points: &[DVec3], strokes: &[Stroke], monitor: &dyn Monitor) -> Result<Vec<DVec3>, AdvectError> {
     if let Some(stroke) = strokes.iter().position(|stroke| matches!(stroke, Stroke::Stamp(_))) {
-        return Err(FlowError::Stamp { stroke });
+        return Err(AdvectError::Stamp { stroke });
     }
     let mut carried = points.to_vec();
-    advance(&mut carried, strokes, monitor)?;
+    advect(&mut carried, strokes, monitor)?;
     Ok(carried)
 }
 
 /// Why points cannot be carried.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum FlowError {
+pub enum AdvectError {
     /// The monitor stopped it.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -42,7 +42,7 @@ pub enum FlowError {
 
 /// What one stroke did to points.
 #[derive(Debug, Default)]
-pub(crate) struct Passage {
+pub(crate) struct Advected {
     /// Evaluations of the field.
     pub(crate) evaluations: u64,
     /// Indices of the points that it moved, in ascending order.
@@ -50,14 +50,14 @@ pub(crate) struct Passage {
 }
 
 /// Carries `points` through `strokes` in place, and returns the number of evaluations of the fields.
-pub(crate) fn advance(points: &mut [DVec3], strokes: &[Stroke], monitor: &dyn Monitor) -> Result<u64, Cancelled> {
+pub(crate) fn advect(points: &mut [DVec3], strokes: &[Stroke], monitor: &dyn Monitor) -> Result<u64, Cancelled> {
     let reaches: Vec<Aabb> = strokes.iter().map(Stroke::reach).collect();
     let evaluations = AtomicU64::new(0);
     for_each_chunk(points, monitor, |_, chunk| {
         let mut bounds = bounds(chunk);
         for (stroke, &reach) in strokes.iter().zip(&reaches) {
             if bounds.overlaps(reach) {
-                evaluations.fetch_add(stroke.advance(chunk), Ordering::Relaxed);
+                evaluations.fetch_add(stroke.advect_chunk(chunk), Ordering::Relaxed);
                 bounds = self::bounds(chunk);
             }
         }
@@ -66,24 +66,24 @@ pub(crate) fn advance(points: &mut [DVec3], strokes: &[Stroke], monitor: &dyn Mo
 }
 
 /// Carries `points` through one stroke in place. `bounds` are the boxes around each [`CHUNK`] of them.
-pub(crate) fn advance_once(
+pub(crate) fn advect_once(
     points: &mut [DVec3],
     bounds: &[Aabb],
     stroke: &Stroke,
     monitor: &dyn Monitor,
-) -> Result<Passage, Cancelled> {
+) -> Result<Advected, Cancelled> {
     let reach = stroke.reach();
     let passages = for_each_chunk(points, monitor, |index, chunk| {
         if !bounds[index].overlaps(reach) {
-            return Passage::default();
+            return Advected::default();
         }
         let before = chunk.to_vec();
-        let evaluations = stroke.advance(chunk);
+        let evaluations = stroke.advect_chunk(chunk);
         let is_moved = |place: &usize| bits(before[*place]) != bits(chunk[*place]);
         let moved = (0..chunk.len()).filter(is_moved).map(|place| (index * CHUNK + place) as u32).collect();
-        Passage { evaluations, moved }
+        Advected { evaluations, moved }
     })?;
-    Ok(Passage {
+    Ok(Advected {
         evaluations: passages.iter().map(|passage| passage.evaluations).sum(),
         moved: passages.into_iter().flat_map(|passage| passage.moved).collect(),
     })

@@ -50,7 +50,7 @@ impl JacobianRange {
         for (&center, &length) in centers.iter().zip(&lengths) {
             carried.extend(DVec3::AXES.iter().flat_map(|&axis| [center + length * axis, center - length * axis]));
         }
-        flow::advance(&mut carried, std::slice::from_ref(stroke), monitor)?;
+        flow::advect(&mut carried, std::slice::from_ref(stroke), monitor)?;
         let (images, sides) = carried.split_at(centers.len());
         let moved = (0..centers.len()).filter(|&index| images[index] != centers[index]);
         let determinants = moved.map(|index| {
@@ -74,7 +74,7 @@ fn evenly(points: &[DVec3], count: usize) -> impl Iterator<Item = DVec3> {
 mod tests {
     use std::sync::Arc;
 
-    use isochore_mesh::{Silent, Sphere, primitives};
+    use isochore_mesh::{NoProgress, Sphere, primitives};
 
     use super::*;
     use crate::{Move, Pose, Profile, Tool, Twist};
@@ -86,7 +86,7 @@ mod tests {
     }
 
     fn range(stroke: &Stroke) -> JacobianRange {
-        JacobianRange::of(stroke, &primitives::icosphere(1.0, 5).positions, &Silent).unwrap().unwrap()
+        JacobianRange::of(stroke, &primitives::icosphere(1.0, 5).positions, &NoProgress).unwrap().unwrap()
     }
 
     #[test]
@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn nothing_moved_has_no_determinant() {
         let points = [DVec3::splat(9.0)];
-        assert_eq!(JacobianRange::of(&press(0.125), &points, &Silent), Ok(None));
-        assert_eq!(JacobianRange::of(&press(0.125), &[], &Silent), Ok(None));
+        assert_eq!(JacobianRange::of(&press(0.125), &points, &NoProgress), Ok(None));
+        assert_eq!(JacobianRange::of(&press(0.125), &[], &NoProgress), Ok(None));
     }
 }

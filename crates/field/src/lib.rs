@@ -47,7 +47,7 @@ mod tool;
 
 pub use deform::{DeformError, DeformOptions, Deformed, deform};
 pub use field::{Field, FieldBlock, MovingField, NO_CORE};
-pub use flow::{FlowError, flow_points};
+pub use flow::{AdvectError, advect_points};
 pub use jacobian::JacobianRange;
 pub use jointed_tool::{Bone, JointedTool, JointedToolError, Posture};
 pub use lock::{Lock, lock_part, lock_volume};

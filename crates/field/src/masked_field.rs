@@ -16,14 +16,14 @@ const MAX_INSTANTS: usize = 32;
 pub(crate) struct MaskedField {
     field: Arc<dyn MovingField>,
     mask: Arc<Mask>,
-    carrying_speed: f64,
+    core_speed: f64,
 }
 
 impl MaskedField {
     /// `field` with its potential multiplied by what `mask` leaves free; `bounds` is the box of what is to be carried.
     pub(crate) fn new(field: Arc<dyn MovingField>, mask: Arc<Mask>, bounds: Aabb) -> Self {
-        let mut masked = Self { field, mask, carrying_speed: 0.0 };
-        masked.carrying_speed = masked.field.carrying_speed().max(masked.speed_at_probes(bounds));
+        let mut masked = Self { field, mask, core_speed: 0.0 };
+        masked.core_speed = masked.field.core_speed().max(masked.speed_at_probes(bounds));
         masked
     }
 
@@ -33,7 +33,7 @@ impl MaskedField {
         let around = bounds.expanded(bounds.size().length());
         let mut probes = self.mask.probes();
         probes.retain(|&probe| around.distance(probe) == 0.0);
-        let steps = self.field.carrying_speed() / self.field.feature_size();
+        let steps = self.field.core_speed() / self.field.feature_size();
         // As a float, because the ratio may be infinite or no number at all.
         let instants = steps.ceil().clamp(1.0, MAX_INSTANTS as f64) as usize;
         let speeds = (0..=instants).map(|instant| {
@@ -54,8 +54,8 @@ impl MovingField for MaskedField {
         self.field.approach_speed()
     }
 
-    fn carrying_speed(&self) -> f64 {
-        self.carrying_speed
+    fn core_speed(&self) -> f64 {
+        self.core_speed
     }
 
     fn feature_size(&self) -> f64 {

@@ -47,8 +47,8 @@ impl MovingField for MirroredField {
         self.field.approach_speed()
     }
 
-    fn carrying_speed(&self) -> f64 {
-        self.field.carrying_speed()
+    fn core_speed(&self) -> f64 {
+        self.field.core_speed()
     }
 
     fn feature_size(&self) -> f64 {
@@ -106,8 +106,8 @@ impl MirroredInstant {
         let Some((gauge, center)) = self.gauge.filter(|(gauge, center)| gauge.center != *center) else { return };
         for lane in (0..LANES).filter(|&lane| out.clearance[lane] == 0.0) {
             let change = gauge.change(center, points.get(lane));
-            let potential = out.potential.get(lane) + out.share.value[lane] * change;
-            let velocity = out.velocity.get(lane) + out.share.gradient.get(lane).cross(change);
+            let potential = out.potential.get(lane) + out.weight.value[lane] * change;
+            let velocity = out.velocity.get(lane) + out.weight.gradient.get(lane).cross(change);
             out.potential.set(lane, potential);
             out.velocity.set(lane, velocity);
         }
@@ -118,9 +118,9 @@ impl MirroredInstant {
 fn combine(plane: &MirrorPlane, field: &mut FieldBlock, image: &FieldBlock) {
     let mut weight = ScalarBlock::ONE;
     for lane in 0..LANES {
-        let (share, other) = (field.share.value[lane], image.share.value[lane]);
-        let gradient = field.share.gradient.get(lane);
-        let other_gradient = plane.reflect_vector(image.share.gradient.get(lane));
+        let (share, other) = (field.weight.value[lane], image.weight.value[lane]);
+        let gradient = field.weight.gradient.get(lane);
+        let other_gradient = plane.reflect_vector(image.weight.gradient.get(lane));
         let value = 1.0 / (1.0 + share * other);
         weight.value[lane] = value;
         weight.gradient.set(lane, -value * value * (other * gradient + share * other_gradient));
@@ -128,8 +128,8 @@ fn combine(plane: &MirrorPlane, field: &mut FieldBlock, image: &FieldBlock) {
         let reflect = |vector: DVec3| plane.reflect_vector(vector);
         field.potential.set(lane, field.potential.get(lane) - reflect(image.potential.get(lane)));
         field.velocity.set(lane, field.velocity.get(lane) + reflect(image.velocity.get(lane)));
-        field.share.value[lane] = share + other;
-        field.share.gradient.set(lane, gradient + other_gradient);
+        field.weight.value[lane] = share + other;
+        field.weight.gradient.set(lane, gradient + other_gradient);
         field.clearance[lane] = field.clearance[lane].min(image.clearance[lane]);
         // Closed forms on one side only would break the symmetry in the last digits.
         field.core[lane] = NO_CORE;

@@ -52,7 +52,7 @@ impl MovingField for MovingTool {
         self.twist.top_speed(self.tool.support_bounds())
     }
 
-    fn carrying_speed(&self) -> f64 {
+    fn core_speed(&self) -> f64 {
         self.twist.top_speed(self.tool.reference())
     }
 

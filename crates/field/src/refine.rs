@@ -147,7 +147,7 @@ impl Refinement {
             return Ok(None);
         }
         add_longest_edges(mesh, &mut chosen);
-        self.evaluations += mesh.carry_followed(strokes, monitor)?;
+        self.evaluations += mesh.advect_followed(strokes, monitor)?;
         self.is_limited = mesh.triangles.len() + chosen.added() > criteria.max_triangles;
         if self.is_limited {
             return Ok(None);
@@ -224,7 +224,7 @@ pub(crate) fn refine(
                 mesh.follow_edges_of(index);
             }
         }
-        refinement.evaluations += mesh.carry_followed(strokes, monitor)?;
+        refinement.evaluations += mesh.advect_followed(strokes, monitor)?;
         // With the neighbors across the edges that are newly followed.
         mesh.put_back(&changed);
         let changed = mesh.take_changed();

@@ -125,7 +125,7 @@ impl MovingField for Ring {
         self.distance.abs()
     }
 
-    fn carrying_speed(&self) -> f64 {
+    fn core_speed(&self) -> f64 {
         self.distance.abs()
     }
 

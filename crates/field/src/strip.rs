@@ -76,7 +76,7 @@ pub struct Strip {
     start: Arc<SpineInstant>,
     start_frame: Option<StartFrame>,
     extent: f64,
-    carrying_speed: f64,
+    core_speed: f64,
 }
 
 impl Strip {
@@ -97,14 +97,14 @@ impl Strip {
         let start = Arc::new(SpineInstant::new(curve, start_frame));
         let shape = Arc::new(shape);
         let mut strip =
-            Self { spine: Arc::new(spine), shape, motion, start, start_frame, extent: 0.0, carrying_speed: 0.0 };
+            Self { spine: Arc::new(spine), shape, motion, start, start_frame, extent: 0.0, core_speed: 0.0 };
         let count = if strip.spine.is_reshaping() { CHECKED_INSTANTS } else { 1 };
         let times: Vec<f64> = (0..count).map(|index| index as f64 / (count - 1).max(1) as f64).collect();
         let instants: Vec<Arc<SpineInstant>> = times.iter().map(|&time| strip.instant(time)).collect();
         strip.extent = instants.iter().map(|instant| strip.extent_from(instant)).fold(0.0, f64::max);
         for (instant, &time) in instants.iter().zip(&times) {
             strip.check(instant, time)?;
-            strip.carrying_speed = strip.carrying_speed.max(strip.carrying_speed_at(instant));
+            strip.core_speed = strip.core_speed.max(strip.core_speed_at(instant));
         }
         Ok(strip)
     }
@@ -159,7 +159,7 @@ impl Strip {
     }
 
     /// Largest speed in the core, from samples.
-    fn carrying_speed_at(&self, instant: &SpineInstant) -> f64 {
+    fn core_speed_at(&self, instant: &SpineInstant) -> f64 {
         let travel = match self.motion {
             StripMotion::Along { distance } => return distance.abs(),
             StripMotion::Across { travel } => travel,
@@ -204,8 +204,8 @@ impl MovingField for Strip {
         }
     }
 
-    fn carrying_speed(&self) -> f64 {
-        self.carrying_speed
+    fn core_speed(&self) -> f64 {
+        self.core_speed
     }
 
     fn feature_size(&self) -> f64 {

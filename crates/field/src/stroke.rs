@@ -41,12 +41,12 @@ impl Stroke {
     /// no point by itself.
     ///
     /// Each point's way depends on that point alone: the bits do not depend on its neighbors in the slice.
-    pub(crate) fn advance(&self, points: &mut [DVec3]) -> u64 {
+    pub(crate) fn advect_chunk(&self, points: &mut [DVec3]) -> u64 {
         match self {
-            Self::Move(stroke) => stroke.advance(points),
-            Self::Field(stroke) => stroke.advance(points),
-            Self::Twist(stroke) => stroke.advance(points),
-            Self::Bend(stroke) => stroke.advance(points),
+            Self::Move(stroke) => stroke.advect_chunk(points),
+            Self::Field(stroke) => stroke.advect_chunk(points),
+            Self::Twist(stroke) => stroke.advect_chunk(points),
+            Self::Bend(stroke) => stroke.advect_chunk(points),
             Self::Stamp(_) => 0,
         }
     }

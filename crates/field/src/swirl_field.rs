@@ -57,11 +57,11 @@ impl SwirlField {
 
     /// Whether the symmetric mean of this and its mirror images stands still all over the box.
     pub(crate) fn is_undone_by(&self, mirrors: &[MirrorPlane]) -> bool {
-        if mirrors.is_empty() || self.carrying_speed() == 0.0 {
+        if mirrors.is_empty() || self.core_speed() == 0.0 {
             return false;
         }
         let field = MirroredField::new(Arc::new(*self), mirrors).at(0.0);
-        let least = UNDONE * self.carrying_speed();
+        let least = UNDONE * self.core_speed();
         let grid = |index: usize| [index % 4, index / 4 % 4, index / 16].map(|step| step as f64 / 3.0);
         let place = |index| self.bounds.min + self.bounds.size() * DVec3::from_array(grid(index));
         (0..64).all(|index| field.velocity(place(index)).length() <= least)
@@ -77,7 +77,7 @@ impl MovingField for SwirlField {
         0.0
     }
 
-    fn carrying_speed(&self) -> f64 {
+    fn core_speed(&self) -> f64 {
         let (arm, angular) = self.extremes();
         arm * angular
     }

@@ -30,7 +30,7 @@ use edge_cycles::EdgeCycles;
 use crate::{
     Stroke,
     facet_error::{SHARE_SEEN, edge_lengths},
-    flow::{self, CHUNK, Passage},
+    flow::{self, Advected, CHUNK},
 };
 
 /// The edge's midpoint is not followed.
@@ -106,7 +106,7 @@ struct Midpoints {
 
 /// What a stroke did to the images.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Advance {
+pub(crate) struct AdvectedMesh {
     /// Evaluations of the field.
     pub(crate) evaluations: u64,
     /// Vertices that it moved.
@@ -185,10 +185,10 @@ impl Tessellation {
     }
 
     /// Carries all images through one more stroke.
-    pub(crate) fn advance(&mut self, stroke: &Stroke, monitor: &dyn Monitor) -> Result<Advance, Cancelled> {
+    pub(crate) fn advect(&mut self, stroke: &Stroke, monitor: &dyn Monitor) -> Result<AdvectedMesh, Cancelled> {
         let near = self.triangles_in(stroke.reach());
-        let vertices = advance_images(&mut self.image, &mut self.vertex_bounds, stroke, monitor)?;
-        let midpoints = advance_images(&mut self.midpoints.image, &mut self.midpoints.bounds, stroke, monitor)?;
+        let vertices = advect_images(&mut self.image, &mut self.vertex_bounds, stroke, monitor)?;
+        let midpoints = advect_images(&mut self.midpoints.image, &mut self.midpoints.bounds, stroke, monitor)?;
         let is_moved = flags(self.image.len(), &vertices.moved);
         let is_midpoint_moved = flags(self.midpoints.image.len(), &midpoints.moved);
         let has_changed = |&index: &u32| {
@@ -198,7 +198,7 @@ impl Tessellation {
         };
         let changed: Vec<u32> = near.into_par_iter().filter(has_changed).collect();
         self.report_changed(&changed);
-        Ok(Advance { evaluations: vertices.evaluations + midpoints.evaluations, moved: vertices.moved.len() })
+        Ok(AdvectedMesh { evaluations: vertices.evaluations + midpoints.evaluations, moved: vertices.moved.len() })
     }
 
     /// The triangles in blocks whose images, or those of their midpoints, reach into a box; in ascending order.
@@ -262,7 +262,7 @@ impl Tessellation {
     }
 
     /// From now on follows the midpoint of the edge of a half-edge, and returns its number. Its image is not known until the
-    /// next [`carry_followed`](Self::carry_followed).
+    /// next [`advect_followed`](Self::advect_followed).
     fn follow(&mut self, half_edge: u32) -> u32 {
         let known = self.midpoints.of_half_edge[half_edge as usize];
         if known != UNFOLLOWED {
@@ -290,12 +290,12 @@ impl Tessellation {
 
     /// Carries the midpoints that are newly followed through the `strokes` since the base, which has changed the triangles at
     /// those that move. Returns the evaluations of the fields.
-    pub(crate) fn carry_followed(&mut self, strokes: &[Stroke], monitor: &dyn Monitor) -> Result<u64, Cancelled> {
+    pub(crate) fn advect_followed(&mut self, strokes: &[Stroke], monitor: &dyn Monitor) -> Result<u64, Cancelled> {
         let midpoints = &mut self.midpoints;
         let pending = std::mem::take(&mut midpoints.pending);
         let number = |half_edge: u32| midpoints.of_half_edge[half_edge as usize] as usize;
         let mut points: Vec<DVec3> = pending.iter().map(|&half_edge| midpoints.base[number(half_edge)]).collect();
-        let evaluations = flow::advance(&mut points, strokes, monitor)?;
+        let evaluations = flow::advect(&mut points, strokes, monitor)?;
         let mut changed = Vec::new();
         for (&half_edge, point) in pending.iter().zip(points) {
             let number = midpoints.of_half_edge[half_edge as usize] as usize;
@@ -406,14 +406,14 @@ impl Midpoints {
 }
 
 /// Carries images through a stroke, of which `bounds` says where each block is.
-fn advance_images(
+fn advect_images(
     image: &mut [DVec3],
     bounds: &mut Blocks<Aabb>,
     stroke: &Stroke,
     monitor: &dyn Monitor,
-) -> Result<Passage, Cancelled> {
+) -> Result<Advected, Cancelled> {
     let boxes: Vec<Aabb> = bounds.know(image.len(), |block| Aabb::of(image[block].iter().copied())).iter().collect();
-    let passage = flow::advance_once(image, &boxes, stroke, monitor)?;
+    let passage = flow::advect_once(image, &boxes, stroke, monitor)?;
     passage.moved.iter().for_each(|&index| bounds.forget(index as usize));
     Ok(passage)
 }

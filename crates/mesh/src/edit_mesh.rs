@@ -205,13 +205,13 @@ impl EditMesh {
 
     /// A half-edge that leaves `vertex`, at the boundary the one without a twin; [`NONE`] for a vertex without triangles.
     #[inline]
-    pub fn leaving(&self, vertex: u32) -> u32 {
+    pub fn outgoing(&self, vertex: u32) -> u32 {
         self.leaving.items()[vertex as usize]
     }
 
     /// Whether the surface ends at `vertex`.
     pub fn is_boundary(&self, vertex: u32) -> bool {
-        let leaving = self.leaving(vertex);
+        let leaving = self.outgoing(vertex);
         leaving != NONE && self.twin(leaving) == NONE
     }
 

@@ -54,7 +54,7 @@ pub use grid_mesh::GridMesh;
 pub use journaled::{Delta, FreeSlots, Journaled};
 pub use measure::{Components, EdgeLengths, VolumeFrame, signed_volume};
 pub use mesh_distance::MeshDistance;
-pub use monitor::{Cancelled, Monitor, Silent};
+pub use monitor::{Cancelled, Monitor, NoProgress};
 pub use self_intersection::{SelfIntersectionError, SelfIntersections};
 pub use shapes::{Capsule, Ellipsoid, HalfSpace, RoundedBox, ShapeError, Sphere, Torus};
 pub use surface_tree::{SurfaceHit, SurfaceTree};

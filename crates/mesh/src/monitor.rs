@@ -30,9 +30,9 @@ pub trait Monitor: Sync {
 
 /// A monitor that hears nothing and stops nothing.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Silent;
+pub struct NoProgress;
 
-impl Monitor for Silent {}
+impl Monitor for NoProgress {}
 
 /// The work was stopped by its [`Monitor`]; it left nothing half done behind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

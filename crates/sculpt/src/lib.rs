@@ -10,7 +10,7 @@
 //! - A [`PointFlow`] carries points that are no mesh, and need not be all there at once.
 //!
 //! ```
-//! use isochore_mesh::Silent;
+//! use isochore_mesh::NoProgress;
 //! use isochore_sculpt::{Meshes, Recipe, recipe::Format, replay};
 //!
 //! let text = r#"
@@ -24,7 +24,7 @@
 //!     degrees_per_unit = 30.0
 //! "#;
 //! let recipe = Recipe::parse(text, Format::Toml, &[])?;
-//! let replay = replay(&recipe, &Meshes::new(), &Silent)?;
+//! let replay = replay(&recipe, &Meshes::new(), &NoProgress)?;
 //! assert_eq!(replay.deformed.receipt.strokes.len(), 1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -73,10 +73,10 @@ impl PointFlow {
     ///
     /// # Errors
     /// [`ReplayError::Cancelled`] alone.
-    pub fn carry(&self, points: &[DVec3], monitor: &dyn Monitor) -> Result<Vec<DVec3>, ReplayError> {
-        field::flow_points(points, &self.strokes, monitor).map_err(|error| match error {
-            field::FlowError::Cancelled(cancelled) => ReplayError::Cancelled(cancelled),
-            field::FlowError::Stamp { stroke } => stamp_on_points(stroke).into(),
+    pub fn advect(&self, points: &[DVec3], monitor: &dyn Monitor) -> Result<Vec<DVec3>, ReplayError> {
+        field::advect_points(points, &self.strokes, monitor).map_err(|error| match error {
+            field::AdvectError::Cancelled(cancelled) => ReplayError::Cancelled(cancelled),
+            field::AdvectError::Stamp { stroke } => stamp_on_points(stroke).into(),
         })
     }
 }

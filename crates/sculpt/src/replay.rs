@@ -58,7 +58,7 @@ pub fn replay_points(
     monitor: &dyn Monitor,
 ) -> Result<PointReplay, ReplayError> {
     let flow = PointFlow::new(recipe, meshes, Aabb::of(points.iter().copied()), monitor)?;
-    let points = flow.carry(points, monitor)?;
+    let points = flow.advect(points, monitor)?;
     Ok(PointReplay { points, warnings: flow.warnings })
 }
 

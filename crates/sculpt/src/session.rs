@@ -18,13 +18,13 @@
 //!
 //! use glam::DVec3;
 //! use isochore_field::Pose;
-//! use isochore_mesh::{Silent, primitives::icosphere};
+//! use isochore_mesh::{NoProgress, primitives::icosphere};
 //! use isochore_sculpt::{Meshes, recipe, session::{Session, SessionOptions, SessionTool, StrokeOptions}};
 //!
 //! let mut session = Session::open(icosphere(1.0, 4), SessionOptions::default())?;
 //! let shape = recipe::ToolShape::Sphere(recipe::Sphere { radius: 0.2 });
 //! let brush = recipe::Tool { shape, support: 0.3, profile: recipe::Profile::Quintic, free_form: 0.0 };
-//! let brush = Arc::new(SessionTool::new("brush", brush, &Meshes::new(), &Silent)?);
+//! let brush = Arc::new(SessionTool::new("brush", brush, &Meshes::new(), &NoProgress)?);
 //!
 //! session.begin_stroke(&brush, StrokeOptions::default())?;
 //! for step in 0..5 {
@@ -40,8 +40,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod advection;
 mod buffers;
-mod carrying;
 mod editing;
 mod error;
 mod export;
@@ -125,7 +125,7 @@ impl Session {
         let opened_volume = ClosedMesh::new(&mesh).ok().map(|closed| closed.volume());
         let surface = Surface::open(mesh, options.normals)?;
         let loose =
-            (0..surface.topology.vertex_count() as u32).filter(|&vertex| surface.topology.leaving(vertex) == NONE);
+            (0..surface.topology.vertex_count() as u32).filter(|&vertex| surface.topology.outgoing(vertex) == NONE);
         let loose = loose.collect();
         Ok(Self { options, surface, loose, opened_bounds, opened_volume, mask, stroke: None, steps: Steps::default() })
     }
@@ -174,7 +174,7 @@ impl Session {
         let mut done = MoveReceipt::default();
         if let Some(last) = stroke.pose {
             let segment = self.segment(&stroke.tool, [last, pose])?;
-            let carried = self.carry(segment, &mut done);
+            let carried = self.advect(segment, &mut done);
             if let Some(stroke) = &mut self.stroke {
                 // Edges that were split before the move was refused stay so.
                 stroke.note_edits(&done);

@@ -1,7 +1,7 @@
 //! Masks of recipes, on meshes and points.
 
 use glam::DVec3;
-use isochore_mesh::{Silent, primitives};
+use isochore_mesh::{NoProgress, primitives};
 use isochore_sculpt::{
     Meshes, Recipe,
     recipe::{Format, Override},
@@ -47,7 +47,7 @@ fn error(settings: &[&str]) -> String {
     let overrides: Vec<Override> = settings.iter().map(|text| Override::parse(text).unwrap()).collect();
     match Recipe::parse(TEXT, Format::Toml, &overrides) {
         Err(error) => error.to_string(),
-        Ok(recipe) => replay(&recipe, &meshes(), &Silent).unwrap_err().to_string(),
+        Ok(recipe) => replay(&recipe, &meshes(), &NoProgress).unwrap_err().to_string(),
     }
 }
 
@@ -55,7 +55,7 @@ fn error(settings: &[&str]) -> String {
 fn pins_hold_and_mirrors_are_symmetric() {
     let (recipe, meshes) = (recipe(&[]), meshes());
     let rest = &meshes["target"].positions;
-    let image = replay(&recipe, &meshes, &Silent).unwrap().deformed.mesh.positions;
+    let image = replay(&recipe, &meshes, &NoProgress).unwrap().deformed.mesh.positions;
     let pinned = |rest: &DVec3| rest.distance(DVec3::NEG_Z) < 0.3;
     assert!(rest.iter().filter(|rest| pinned(rest)).count() > 10);
     for (rest, image) in rest.iter().zip(&image) {
@@ -65,7 +65,7 @@ fn pins_hold_and_mirrors_are_symmetric() {
     // The mirror images of points that are exactly symmetric are exactly symmetric across a plane of coordinates.
     let flip = DVec3::new(-1.0, 1.0, 1.0);
     let mirrored: Vec<DVec3> = rest.iter().map(|rest| flip * *rest).collect();
-    let mirrored = replay_points(&recipe, &meshes, &mirrored, &Silent).unwrap().points;
+    let mirrored = replay_points(&recipe, &meshes, &mirrored, &NoProgress).unwrap().points;
     for (image, mirrored) in image.iter().zip(mirrored) {
         assert_eq!(flip * *image, mirrored);
     }
@@ -79,11 +79,11 @@ fn points_move_as_vertices_do_and_need_the_target() {
     recipe.mask.vertices = Some(isochore_sculpt::recipe::VertexWeights::Values(weights));
     let meshes = meshes();
     let rest = &meshes["target"].positions;
-    let mesh = replay(&recipe, &meshes, &Silent).unwrap().deformed.mesh;
-    assert_eq!(replay_points(&recipe, &meshes, rest, &Silent).unwrap().points, mesh.positions);
+    let mesh = replay(&recipe, &meshes, &NoProgress).unwrap().deformed.mesh;
+    assert_eq!(replay_points(&recipe, &meshes, rest, &NoProgress).unwrap().points, mesh.positions);
     let held = rest.iter().zip(&mesh.positions).filter(|(rest, _)| rest.y > 0.5);
     assert!(held.clone().count() > 100 && held.into_iter().all(|(rest, image)| rest == image));
-    let missing = replay_points(&recipe, &Meshes::new(), rest, &Silent).unwrap_err();
+    let missing = replay_points(&recipe, &Meshes::new(), rest, &NoProgress).unwrap_err();
     assert!(missing.to_string().contains("`target` was not loaded"), "{missing}");
 }
 
@@ -94,7 +94,7 @@ fn rates_that_refinement_cannot_follow_are_refused() {
     let words = "stroke.1.degrees_per_unit2: is 1000, which winds the target up";
     assert!(refined("stroke.1.degrees_per_unit2=1000").contains(words));
     let bare = recipe(&["mask={}", "stroke.1.degrees_per_unit2=1000"]);
-    assert!(replay(&bare, &meshes(), &Silent).is_ok());
+    assert!(replay(&bare, &meshes(), &NoProgress).is_ok());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Recipes carried out on meshes and points.
 
 use glam::DVec3;
-use isochore_mesh::{Cancelled, Monitor, Silent, TriMesh, primitives};
+use isochore_mesh::{Cancelled, Monitor, NoProgress, TriMesh, primitives};
 use isochore_sculpt::{
     Meshes, Recipe, ReplayError, Report, Source,
     recipe::{Format, Override},
@@ -43,8 +43,8 @@ fn meshes(target: TriMesh) -> Meshes {
 fn points_move_as_vertices_do() {
     let meshes = meshes(primitives::icosphere(1.0, 3));
     let recipe = recipe(&[]);
-    let mesh = replay(&recipe, &meshes, &Silent).unwrap().deformed.mesh;
-    let points = replay_points(&recipe, &Meshes::new(), &meshes["target"].positions, &Silent).unwrap();
+    let mesh = replay(&recipe, &meshes, &NoProgress).unwrap().deformed.mesh;
+    let points = replay_points(&recipe, &Meshes::new(), &meshes["target"].positions, &NoProgress).unwrap();
     assert_eq!(points.points, mesh.positions);
     assert!(points.warnings.is_empty());
     assert_ne!(mesh.positions, meshes["target"].positions);
@@ -55,7 +55,7 @@ fn a_finer_mesh_agrees_where_they_meet() {
     let recipe = recipe(&["refine.enabled=true"]);
     let [coarse, fine] = [2, 4].map(|subdivisions| {
         let meshes = meshes(primitives::icosphere(1.0, subdivisions));
-        replay(&recipe, &meshes, &Silent).unwrap().deformed.mesh
+        replay(&recipe, &meshes, &NoProgress).unwrap().deformed.mesh
     });
     // Subdivision leaves the vertices that are there in front, unchanged.
     let common = primitives::icosphere(1.0, 2).positions.len();
@@ -65,7 +65,7 @@ fn a_finer_mesh_agrees_where_they_meet() {
 #[test]
 fn points_have_no_lock_and_are_told_so() {
     let recipe = recipe(&["volume.lock=true"]);
-    let points = replay_points(&recipe, &Meshes::new(), &[DVec3::ZERO], &Silent).unwrap();
+    let points = replay_points(&recipe, &Meshes::new(), &[DVec3::ZERO], &NoProgress).unwrap();
     assert!(points.warnings[0].contains("lock"), "{:?}", points.warnings);
 }
 
@@ -74,7 +74,7 @@ fn targets_are_scaled_then_rotated_then_moved() {
     let transform = "target.transform={ scale = 2, rotate = [0, 0, 3, 90], translate = [10, 0, 0] }";
     let mesh =
         TriMesh { positions: vec![DVec3::X, DVec3::Y, DVec3::Z], triangles: vec![[0, 1, 2]], ..TriMesh::default() };
-    let target = replay(&recipe(&[transform]), &meshes(mesh), &Silent).unwrap().scene.target;
+    let target = replay(&recipe(&[transform]), &meshes(mesh), &NoProgress).unwrap().scene.target;
     let expected = [DVec3::new(10.0, 2.0, 0.0), DVec3::new(8.0, 0.0, 0.0), DVec3::new(10.0, 0.0, 2.0)];
     for (found, expected) in target.positions.iter().zip(expected) {
         // Coordinates of ten round at 2e-15.
@@ -86,8 +86,8 @@ fn targets_are_scaled_then_rotated_then_moved() {
 fn frames_lead_from_rest_to_the_finished_mesh() {
     for lock in ["volume.lock=false", "volume.lock=true"] {
         let recipe = recipe(&[lock, "refine.enabled=true"]);
-        let replay = replay(&recipe, &meshes(primitives::icosphere(1.0, 3)), &Silent).unwrap();
-        let frames: Vec<TriMesh> = (0..5).map(|index| replay.frame(index, 5, &Silent).unwrap()).collect();
+        let replay = replay(&recipe, &meshes(primitives::icosphere(1.0, 3)), &NoProgress).unwrap();
+        let frames: Vec<TriMesh> = (0..5).map(|index| replay.frame(index, 5, &NoProgress).unwrap()).collect();
         assert_eq!(frames[0], replay.deformed.rest);
         assert_eq!(frames[4], replay.deformed.mesh);
         // Half of the time is the first of the two strokes.
@@ -95,14 +95,14 @@ fn frames_lead_from_rest_to_the_finished_mesh() {
         first.strokes.truncate(1);
         first.refine.enabled = false;
         let rest = meshes(replay.deformed.rest.clone());
-        assert_eq!(frames[2], isochore_sculpt::replay(&first, &rest, &Silent).unwrap().deformed.mesh);
+        assert_eq!(frames[2], isochore_sculpt::replay(&first, &rest, &NoProgress).unwrap().deformed.mesh);
         assert!(frames.windows(2).all(|pair| pair[0].positions != pair[1].positions));
     }
 }
 
 #[test]
 fn errors_name_what_cannot_be_followed() {
-    let error = |settings: &[&str], meshes: &Meshes| match replay(&recipe(settings), meshes, &Silent) {
+    let error = |settings: &[&str], meshes: &Meshes| match replay(&recipe(settings), meshes, &NoProgress) {
         Ok(_) => panic!("{settings:?}"),
         Err(error) => error.to_string(),
     };
@@ -127,29 +127,29 @@ fn tools_that_no_stroke_uses_are_not_read() {
     assert_eq!(king.as_ref().unwrap().mesh_names(), ["king", "target"]);
     recipe.tools.insert("king".to_owned(), king.unwrap().tools["ball"].clone());
     assert_eq!(recipe.mesh_names(), ["target"]);
-    replay(&recipe, &meshes(primitives::icosphere(1.0, 1)), &Silent).unwrap();
+    replay(&recipe, &meshes(primitives::icosphere(1.0, 1)), &NoProgress).unwrap();
 }
 
 #[test]
 fn reports_are_measured_on_the_mesh_as_written() {
     let recipe = recipe(&["promise.volume=0.01", "promise.no_new_self_intersections=true"]);
-    let replay = replay(&recipe, &meshes(primitives::icosphere(1.0, 3)), &Silent).unwrap();
+    let replay = replay(&recipe, &meshes(primitives::icosphere(1.0, 3)), &NoProgress).unwrap();
     let source = Source { text: b"abc", overrides: &[] };
     let mut written = replay.deformed.mesh.clone();
-    let report = Report::new(&recipe, source, &replay, &written, &Silent).unwrap();
+    let report = Report::new(&recipe, source, &replay, &written, &NoProgress).unwrap();
     assert_eq!(report.missed_promises().count(), 0, "{:?} {:?}", report.promises, report.volume_change);
     assert_eq!(report.promises.len(), 2);
     assert_eq!(report.recipe_sha256, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 
     // A file that holds another mesh than the one in memory is judged by what it holds.
     written.positions.iter_mut().for_each(|position| *position *= 1.1);
-    let report = Report::new(&recipe, source, &replay, &written, &Silent).unwrap();
+    let report = Report::new(&recipe, source, &replay, &written, &NoProgress).unwrap();
     assert_eq!(report.missed_promises().collect::<Vec<_>>(), ["volume"]);
     // 1.1³ − 1, to the precision that the deformation left of the volume.
     assert!((report.volume_change.unwrap() - 0.331).abs() < 0.02);
 
     written.triangles.pop();
-    let report = Report::new(&recipe, source, &replay, &written, &Silent).unwrap();
+    let report = Report::new(&recipe, source, &replay, &written, &NoProgress).unwrap();
     assert_eq!((report.after.closed, report.after.volume, report.volume_change), (false, None, None));
     assert!(!report.promises["volume"]);
     let json = serde_json::to_string(&report).unwrap();
@@ -199,9 +199,9 @@ fn stamped(settings: &[&str]) -> Recipe {
 #[test]
 fn a_stamp_keeps_the_volume_and_is_reported() {
     let recipe = stamped(&[]);
-    let replay = replay(&recipe, &meshes(primitives::icosphere(1.0, 4)), &Silent).unwrap();
+    let replay = replay(&recipe, &meshes(primitives::icosphere(1.0, 4)), &NoProgress).unwrap();
     let source = Source { text: b"", overrides: &[] };
-    let report = Report::new(&recipe, source, &replay, &replay.deformed.mesh, &Silent).unwrap();
+    let report = Report::new(&recipe, source, &replay, &replay.deformed.mesh, &NoProgress).unwrap();
     let stamp = &report.strokes[0];
     assert_eq!(stamp.kind, "stamp");
     assert!(stamp.moved > 100 && stamp.inserted > 100 && stamp.evaluations > 1000);
@@ -211,8 +211,8 @@ fn a_stamp_keeps_the_volume_and_is_reported() {
 
 #[test]
 fn frames_of_a_stamp_go_down_into_the_surface() {
-    let replay = replay(&stamped(&[]), &meshes(primitives::icosphere(1.0, 4)), &Silent).unwrap();
-    let frames: Vec<TriMesh> = (0..9).map(|index| replay.frame(index, 9, &Silent).unwrap()).collect();
+    let replay = replay(&stamped(&[]), &meshes(primitives::icosphere(1.0, 4)), &NoProgress).unwrap();
+    let frames: Vec<TriMesh> = (0..9).map(|index| replay.frame(index, 9, &NoProgress).unwrap()).collect();
     assert_eq!(frames[0].positions, replay.deformed.rest.positions);
     // The pole lies under the ball; nothing of the twist moves it.
     let heights: Vec<f64> = frames.iter().map(|frame| frame.positions[pole(&replay.deformed.rest)].z).collect();
@@ -232,13 +232,13 @@ fn pole(mesh: &TriMesh) -> usize {
 
 #[test]
 fn a_stamp_needs_a_volume() {
-    let error = replay_points(&stamped(&[]), &Meshes::new(), &[DVec3::ZERO], &Silent).unwrap_err();
+    let error = replay_points(&stamped(&[]), &Meshes::new(), &[DVec3::ZERO], &NoProgress).unwrap_err();
     assert_eq!(error.key().as_deref(), Some("stroke.0"));
     assert!(error.to_string().contains("points have none"), "{error}");
 
     let mut open = primitives::icosphere(1.0, 3);
     open.triangles.pop();
-    let error = replay(&stamped(&[]), &meshes(open), &Silent).unwrap_err();
+    let error = replay(&stamped(&[]), &meshes(open), &NoProgress).unwrap_err();
     assert_eq!(error.key().as_deref(), Some("stroke.0"));
     assert!(error.to_string().contains("open mesh"), "{error}");
 }

@@ -1,6 +1,6 @@
 //! Strips and rings in recipes.
 
-use isochore_mesh::Silent;
+use isochore_mesh::NoProgress;
 use isochore_sculpt::{
     Meshes, Recipe, ReplayError, Report, Source,
     recipe::{Format, RecipeError},
@@ -142,7 +142,7 @@ fn impossible_strips_name_the_stroke_and_both_lengths() {
         ("[[-2, 0, 0.9], [0, 0, 0.8]", "[[0, 0, 0.8], [0, 0, 0.8]", "stroke.0: the spine: points 0 and 1 coincide"),
     ] {
         let recipe = read(&RECIPE.replacen(from, to, 1)).unwrap();
-        let error = replay_points(&recipe, &Meshes::new(), &[], &Silent).unwrap_err();
+        let error = replay_points(&recipe, &Meshes::new(), &[], &NoProgress).unwrap_err();
         assert!(error.to_string().starts_with(words), "{error}");
         assert_eq!(error.key().as_deref(), words.split(':').next());
     }
@@ -154,7 +154,7 @@ fn curves_are_put_in_by_name() {
     let text = RECIPE.replacen("[[-2, 0, 0.9], [0, 0, 0.8], [2, 0, 0.9]]", "\"spine.csv\"", 1);
     let mut recipe = read(&text).unwrap();
     assert_eq!(recipe.curve_names(), ["spine.csv"]);
-    let error = replay_points(&recipe, &Meshes::new(), &[], &Silent).unwrap_err();
+    let error = replay_points(&recipe, &Meshes::new(), &[], &NoProgress).unwrap_err();
     assert!(matches!(error, ReplayError::MissingCurve { name } if name == "spine.csv"));
     recipe.inline_curve("spine.csv", &points);
     assert_eq!(recipe, read(RECIPE).unwrap());
@@ -164,9 +164,9 @@ fn curves_are_put_in_by_name() {
 #[test]
 fn strips_and_rings_keep_the_volume() {
     let recipe = read(&format!("{RECIPE}[volume]\nlock = false\n")).unwrap();
-    let replay = replay(&recipe, &Meshes::new(), &Silent).unwrap();
+    let replay = replay(&recipe, &Meshes::new(), &NoProgress).unwrap();
     let source = Source { text: RECIPE.as_bytes(), overrides: &[] };
-    let report = Report::new(&recipe, source, &replay, &replay.deformed.mesh, &Silent).unwrap();
+    let report = Report::new(&recipe, source, &replay, &replay.deformed.mesh, &NoProgress).unwrap();
     let kinds: Vec<&str> = report.strokes.iter().map(|stroke| stroke.kind.as_str()).collect();
     assert_eq!(kinds, ["strip", "strip", "strip", "strip", "ring"]);
     assert!(report.strokes.iter().all(|stroke| stroke.evaluations > 100 && stroke.moved > 10));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bytemuck::cast_slice_mut;
 use glam::DVec3;
-use isochore_mesh::Silent;
+use isochore_mesh::NoProgress;
 use isochore_sculpt::{Meshes, Recipe as RecipeData, Report, Source, recipe::Format, replay, replay_points};
 use wasm_bindgen::prelude::*;
 
@@ -50,9 +50,9 @@ impl Recipe {
 
     /// Deforms the target.
     pub fn run(&self) -> Result<Replay, JsError> {
-        let replay = replay(&self.recipe, &self.meshes, &Silent).map_err(thrown)?;
+        let replay = replay(&self.recipe, &self.meshes, &NoProgress).map_err(thrown)?;
         let source = Source { text: self.text.as_bytes(), overrides: &[] };
-        let report = Report::new(&self.recipe, source, &replay, &replay.deformed.mesh, &Silent).map_err(thrown)?;
+        let report = Report::new(&self.recipe, source, &replay, &replay.deformed.mesh, &NoProgress).map_err(thrown)?;
         let report = serde_json::to_string(&report).map_err(thrown)?;
         Ok(Replay { mesh: Mesh { mesh: replay.deformed.mesh.into() }, report })
     }
@@ -67,7 +67,7 @@ impl Recipe {
         }
         let (rows, []) = points.as_chunks_mut::<3>() else { return Err(thrown("points have three numbers each")) };
         let rows: &mut [DVec3] = cast_slice_mut(rows);
-        let carried = replay_points(&self.recipe, &self.meshes, rows, &Silent).map_err(thrown)?;
+        let carried = replay_points(&self.recipe, &self.meshes, rows, &NoProgress).map_err(thrown)?;
         rows.copy_from_slice(&carried.points);
         Ok(carried.warnings)
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use isochore_mesh::Silent;
+use isochore_mesh::NoProgress;
 use isochore_sculpt::{Meshes, recipe, session::SessionTool};
 use wasm_bindgen::prelude::*;
 
@@ -43,7 +43,7 @@ impl Tool {
         if let (recipe::ToolShape::Mesh(shape), Some(mesh)) = (&description.shape, mesh) {
             meshes.insert(shape.mesh.clone(), mesh.mesh);
         }
-        let tool = SessionTool::new(name, description, &meshes, &Silent).map_err(thrown)?;
+        let tool = SessionTool::new(name, description, &meshes, &NoProgress).map_err(thrown)?;
         Ok(Self { tool: Arc::new(tool) })
     }
 

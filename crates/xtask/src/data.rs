@@ -205,7 +205,7 @@ fn folder() -> PathBuf {
 
 #[cfg(test)]
 mod tests {
-    use isochore_mesh::{SelfIntersections, Silent};
+    use isochore_mesh::{NoProgress, SelfIntersections};
 
     use super::*;
 
@@ -226,7 +226,7 @@ mod tests {
             assert!(check.degenerate_triangles.is_empty() && check.duplicate_triangles.is_empty(), "{name}");
             assert!(mesh.volume() > 0.0, "{name} is turned inside out");
             assert_eq!(mesh.components().count, 1, "{name}");
-            assert!(SelfIntersections::of(&mesh, &Silent).unwrap().triangles().is_empty(), "{name}");
+            assert!(SelfIntersections::of(&mesh, &NoProgress).unwrap().triangles().is_empty(), "{name}");
             assert!((8_000..25_000).contains(&mesh.triangles.len()), "{name}");
 
             let sharpest =

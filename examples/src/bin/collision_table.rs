@@ -7,7 +7,7 @@ use std::{error::Error, fmt::Write, fs};
 
 use isochore_examples::{folder, scene};
 use isochore_field::{DeformOptions, Stroke, deform};
-use isochore_mesh::Silent;
+use isochore_mesh::NoProgress;
 
 /// Recipe, then the thesis' model, triangles, volumes before and after, and frames per second.
 const CASES: [(&str, &str, usize, f64, f64, f64); 6] = [
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     for (recipe, model, triangles, before, after, frames) in CASES {
         let scene = scene(recipe)?;
-        let run = |options: DeformOptions| one.install(|| deform(&scene.target, &scene.strokes, &options, &Silent));
+        let run = |options: DeformOptions| one.install(|| deform(&scene.target, &scene.strokes, &options, &NoProgress));
         let plain = run(DeformOptions { refine: None, lock: false })?;
         let refined = run(DeformOptions { lock: false, ..scene.options })?;
         let volume = scene.target.volume();

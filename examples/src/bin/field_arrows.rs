@@ -150,7 +150,7 @@ fn section(field: &dyn Field, normal: DVec3, spacing: f64) -> Vec<Sample> {
         for (lane, &point) in points.iter().enumerate() {
             let velocity = block.velocity.get(lane);
             if velocity != DVec3::ZERO {
-                samples.push(Sample { point, velocity, is_inside: block.share.value[lane] == 1.0 });
+                samples.push(Sample { point, velocity, is_inside: block.weight.value[lane] == 1.0 });
             }
         }
     }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use isochore_bench::{interleaved_medians, print_row};
-use isochore_field::{Move, Pose, Profile, Stroke, Tool, flow_points};
-use isochore_mesh::{Silent, Sphere, primitives};
+use isochore_field::{Move, Pose, Profile, Stroke, Tool, advect_points};
+use isochore_mesh::{NoProgress, Sphere, primitives};
 
 pub(crate) fn run() {
     print_row(["triangles", "frames/s", "thesis frames/s", "ratio", "M vertex-steps/s"]);
@@ -15,7 +15,7 @@ pub(crate) fn run() {
         let object = primitives::latitude_longitude_sphere(1.0, longitude, latitude);
         let step = one_step();
         let mut frame = || {
-            std::hint::black_box(flow_points(&object.positions, std::slice::from_ref(&step), &Silent))
+            std::hint::black_box(advect_points(&object.positions, std::slice::from_ref(&step), &NoProgress))
                 .expect("nothing cancels");
         };
         let seconds = interleaved_medians(&mut [&mut frame])[0];

@@ -8,8 +8,8 @@ use std::{fs, sync::Arc, time::Instant};
 
 use glam::{DVec3, dvec3};
 use isochore_bench::{Comparison, PythonPeer, cpu_seconds, median, print_row, scratch};
-use isochore_field::{BodyTwist, Move, Pose, Profile, RigidField, Stroke, Tool, flow_points};
-use isochore_mesh::{Distance, DistanceField, DistanceFieldOptions, Grid, Padding, Silent, Sphere, primitives};
+use isochore_field::{BodyTwist, Move, Pose, Profile, RigidField, Stroke, Tool, advect_points};
+use isochore_mesh::{Distance, DistanceField, DistanceFieldOptions, Grid, NoProgress, Padding, Sphere, primitives};
 use serde_json::json;
 
 const RADIUS: f64 = 0.5;
@@ -42,7 +42,7 @@ impl Race {
         let ball = primitives::icosphere(RADIUS, 8);
         let options =
             DistanceFieldOptions { resolution: CELLS[0], padding: Padding::Cells(CELLS[1]), ..Default::default() };
-        let field = DistanceField::new(&ball, &options, &Silent).expect("a closed mesh");
+        let field = DistanceField::new(&ball, &options, &NoProgress).expect("a closed mesh");
         let grid = *field.grid();
         assert_eq!(grid.dims, [128; 3]);
         let exact = Sphere::new(RADIUS).expect("a radius");
@@ -65,7 +65,7 @@ fn stroke(distance: impl Distance + 'static, steps: usize) -> Stroke {
 }
 
 fn carried(points: &[DVec3], strokes: &[Stroke]) -> Vec<DVec3> {
-    flow_points(points, strokes, &Silent).expect("nothing cancels")
+    advect_points(points, strokes, &NoProgress).expect("nothing cancels")
 }
 
 pub(crate) fn run() {

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use isochore_bench::{interleaved_medians, print_row};
-use isochore_field::{Move, Pose, Profile, Stroke, Tool, flow_points};
-use isochore_mesh::{Silent, Sphere, primitives};
+use isochore_field::{Move, Pose, Profile, Stroke, Tool, advect_points};
+use isochore_mesh::{NoProgress, Sphere, primitives};
 
 pub(crate) fn run() {
     let points = primitives::latitude_longitude_sphere(1.0, 800, 701).positions;
@@ -24,7 +24,7 @@ pub(crate) fn run() {
 
     print_row(["touched", "points moved", "ms", "ns/point", "ns/point/step"]);
     for (name, stroke) in strokes {
-        let carry = || flow_points(&points, std::slice::from_ref(&stroke), &Silent).expect("nothing cancels");
+        let carry = || advect_points(&points, std::slice::from_ref(&stroke), &NoProgress).expect("nothing cancels");
         let moved = points.iter().zip(carry()).filter(|&(&before, after)| before != after).count();
         let seconds = interleaved_medians(&mut [&mut || drop(std::hint::black_box(carry()))])[0];
         let Stroke::Move(way) = &stroke else { unreachable!("all are moves") };

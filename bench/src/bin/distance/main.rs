@@ -12,7 +12,7 @@ use std::time::Instant;
 use glam::dvec3;
 use isochore_bench::{Comparison, median, on_one_core, peak_bytes, print_row};
 use isochore_mesh::primitives::latitude_longitude_sphere;
-use isochore_mesh::{DistanceField, DistanceFieldOptions, Silent, TriMesh, io};
+use isochore_mesh::{DistanceField, DistanceFieldOptions, NoProgress, TriMesh, io};
 use peers::{Round, Task};
 use stages::{Stages, build};
 
@@ -74,7 +74,7 @@ fn beside_peers(mesh: &TriMesh, fine: &TriMesh) {
 /// All peers and the distance field in turn.
 fn compare(mesh: &TriMesh, resolution: usize) {
     let options = DistanceFieldOptions { resolution, ..Default::default() };
-    let (field, peak) = peak_bytes(|| DistanceField::new(mesh, &options, &Silent).expect("a sound mesh"));
+    let (field, peak) = peak_bytes(|| DistanceField::new(mesh, &options, &NoProgress).expect("a sound mesh"));
     let count = field.grid().len();
     let [nx, ny, nz] = field.grid().dims;
     let layer_step = (count / NODES_ASKED).max(1);
@@ -197,7 +197,7 @@ fn two_threads(mesh: &TriMesh, resolution: usize) {
     for _ in 0..=ROUNDS {
         for (pool, seconds) in pools.iter().zip(&mut seconds) {
             let begin = Instant::now();
-            pool.install(|| drop(DistanceField::new(mesh, &options, &Silent).expect("a sound mesh")));
+            pool.install(|| drop(DistanceField::new(mesh, &options, &NoProgress).expect("a sound mesh")));
             seconds.push(begin.elapsed().as_secs_f64());
         }
     }

@@ -15,7 +15,7 @@ mod series;
 use std::path::Path;
 
 use isochore_bench::{on_one_core, print_row};
-use isochore_mesh::{DistanceField, DistanceFieldOptions, Silent};
+use isochore_mesh::{DistanceField, DistanceFieldOptions, NoProgress};
 
 use crate::{plot::Plot, series::Series};
 
@@ -68,7 +68,7 @@ fn over_nodes(extent: Extent) -> Vec<Series> {
     for resolution in RESOLUTIONS {
         let options = DistanceFieldOptions { resolution, ..DistanceFieldOptions::default() };
         let narrow = DistanceFieldOptions { band: 4.0 * longest_side(&mesh) / resolution as f64, ..options };
-        let sample = |options| DistanceField::new(&mesh, &options, &Silent).expect("a sound mesh");
+        let sample = |options| DistanceField::new(&mesh, &options, &NoProgress).expect("a sound mesh");
         let nodes = sample(narrow).samples().len();
         all.measure(nodes, extent.seconds, || sample(options));
         band.measure(nodes, extent.seconds, || sample(narrow));

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use isochore_bench::{peak_bytes, print_row, scan_of_cube};
 use isochore_field::deform;
-use isochore_mesh::{SelfIntersections, Silent, TriMesh};
+use isochore_mesh::{NoProgress, SelfIntersections, TriMesh};
 
 use crate::over_triangles::{LOCAL_VERTICES, press, reach_of, refinement};
 
@@ -40,17 +40,17 @@ pub(crate) fn measure_stage(stage: &str, segments: usize) {
 
 fn split(mesh: &TriMesh) -> (usize, Option<u64>) {
     let longest = 0.6 * mesh.edge_lengths().expect("edges").mean;
-    let (split, bytes) = peak_bytes(|| mesh.split_to_length(longest, usize::MAX, &Silent).expect("a sound mesh"));
+    let (split, bytes) = peak_bytes(|| mesh.split_to_length(longest, usize::MAX, &NoProgress).expect("a sound mesh"));
     (split.triangles.len(), bytes)
 }
 
 fn search(mesh: &TriMesh) -> (usize, Option<u64>) {
-    let (_, bytes) = peak_bytes(|| SelfIntersections::of(mesh, &Silent).expect("a sound mesh"));
+    let (_, bytes) = peak_bytes(|| SelfIntersections::of(mesh, &NoProgress).expect("a sound mesh"));
     (mesh.triangles.len(), bytes)
 }
 
 fn deform_locally(mesh: &TriMesh) -> (usize, Option<u64>) {
     let strokes = [press(mesh.positions[mesh.positions.len() / 2], reach_of(LOCAL_VERTICES, mesh))];
-    let (deformed, bytes) = peak_bytes(|| deform(mesh, &strokes, &refinement(), &Silent).expect("a sound mesh"));
+    let (deformed, bytes) = peak_bytes(|| deform(mesh, &strokes, &refinement(), &NoProgress).expect("a sound mesh"));
     (deformed.mesh.triangles.len(), bytes)
 }

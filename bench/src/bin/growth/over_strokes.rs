@@ -1,7 +1,7 @@
 use glam::{DVec3, dvec3};
 use isochore_bench::scan_of_cube;
-use isochore_field::{Stroke, deform, flow_points};
-use isochore_mesh::Silent;
+use isochore_field::{Stroke, advect_points, deform};
+use isochore_mesh::NoProgress;
 
 use crate::{
     Extent, SEGMENTS,
@@ -30,11 +30,13 @@ pub(crate) fn measure(extent: Extent) -> [Vec<Series>; 2] {
             })
             .collect();
         let [plain, refined, flow] = &mut over_number;
-        let deformed = |options| deform(&mesh, &strokes, options, &Silent).expect("a sound mesh");
+        let deformed = |options| deform(&mesh, &strokes, options, &NoProgress).expect("a sound mesh");
         let refinement = refinement();
         plain.measure(count, extent.seconds, || deformed(&PLAIN));
         refined.measure(count, extent.seconds, || deformed(&refinement));
-        flow.measure(count, extent.seconds, || flow_points(&mesh.positions, &strokes, &Silent).expect("no stamp"));
+        flow.measure(count, extent.seconds, || {
+            advect_points(&mesh.positions, &strokes, &NoProgress).expect("no stamp")
+        });
         for (options, moving) in [(&PLAIN, vec![0, 2]), (&refinement, vec![1])] {
             let moved = deformed(options).receipt.strokes.iter().map(|stroke| stroke.moved).sum();
             for index in moving {

@@ -2,9 +2,9 @@ use std::fs;
 
 use glam::DVec3;
 use isochore_bench::{scan_of_cube, scratch};
-use isochore_field::{DeformOptions, Move, Pose, Profile, RefineOptions, Stroke, Tool, deform, flow_points};
+use isochore_field::{DeformOptions, Move, Pose, Profile, RefineOptions, Stroke, Tool, advect_points, deform};
 use isochore_mesh::{
-    ClosedMesh, DistanceField, DistanceFieldOptions, SelfIntersections, Silent, Sphere, Topology, TriMesh, io,
+    ClosedMesh, DistanceField, DistanceFieldOptions, NoProgress, SelfIntersections, Sphere, Topology, TriMesh, io,
 };
 
 use crate::{Extent, series::Series};
@@ -65,13 +65,15 @@ fn measure_mesh(series: &mut [Series; 9], mesh: &TriMesh, extent: Extent) {
     topology.measure(triangles, limit, || Topology::of(mesh));
     closedness.measure(triangles, limit, || ClosedMesh::new(mesh).is_ok());
     volume.measure(triangles, limit, || mesh.volume());
-    self_intersection.measure(triangles, limit, || SelfIntersections::of(mesh, &Silent).expect("a sound mesh"));
+    self_intersection.measure(triangles, limit, || SelfIntersections::of(mesh, &NoProgress).expect("a sound mesh"));
     if triangles <= LARGEST_SPLIT {
         let longest = 0.6 * mesh.edge_lengths().expect("edges").mean;
-        split.measure(triangles, limit, || mesh.split_to_length(longest, usize::MAX, &Silent).expect("a sound mesh"));
+        split.measure(triangles, limit, || {
+            mesh.split_to_length(longest, usize::MAX, &NoProgress).expect("a sound mesh")
+        });
     }
     let options = DistanceFieldOptions::default();
-    grid.measure(triangles, limit, || DistanceField::new(mesh, &options, &Silent).expect("a sound mesh"));
+    grid.measure(triangles, limit, || DistanceField::new(mesh, &options, &NoProgress).expect("a sound mesh"));
 }
 
 fn measure_deformations(series: &mut [Series; 5], mesh: &TriMesh, extent: Extent) {
@@ -83,12 +85,14 @@ fn measure_deformations(series: &mut [Series; 5], mesh: &TriMesh, extent: Extent
         let strokes = [press(middle, reach)];
         for (series, options) in [(plain, PLAIN), (refined, refinement())] {
             series.measure(triangles, extent.seconds, || {
-                deform(mesh, &strokes, &options, &Silent).expect("a sound mesh")
+                deform(mesh, &strokes, &options, &NoProgress).expect("a sound mesh")
             });
         }
     }
     let strokes = [press(middle, WIDE)];
-    flow.measure(triangles, extent.seconds, || flow_points(&mesh.positions, &strokes, &Silent).expect("no stamp"));
+    flow.measure(triangles, extent.seconds, || {
+        advect_points(&mesh.positions, &strokes, &NoProgress).expect("no stamp")
+    });
 }
 
 /// Reach of a stroke that touches about this number of vertices.

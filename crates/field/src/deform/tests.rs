@@ -1,6 +1,6 @@
 use std::{f64::consts::FRAC_PI_2, sync::Arc};
 
-use isochore_mesh::{Capsule, SelfIntersections, Silent, Sphere, primitives};
+use isochore_mesh::{Capsule, NoProgress, SelfIntersections, Sphere, primitives};
 
 use super::*;
 use crate::{Move, Pose, Profile, Tool, Twist, rotation_from_vector};
@@ -25,7 +25,7 @@ fn press(step: f64) -> Stroke {
 }
 
 fn run(mesh: &TriMesh, strokes: &[Stroke], options: &DeformOptions) -> Deformed {
-    deform(mesh, strokes, options, &Silent).unwrap()
+    deform(mesh, strokes, options, &NoProgress).unwrap()
 }
 
 fn volume_change(deformed: &Deformed) -> f64 {
@@ -108,7 +108,7 @@ fn refinement_takes_the_crossings_out_of_a_smooth_stroke() {
     let sphere = primitives::icosphere(1.0, 4);
     let crossing_area = |options: &DeformOptions| {
         let mesh = run(&sphere, &[turning_rod(Profile::Quintic, 0.05)], options).mesh;
-        SelfIntersections::of(&mesh, &Silent).unwrap().area(&mesh)
+        SelfIntersections::of(&mesh, &NoProgress).unwrap().area(&mesh)
     };
     assert!(crossing_area(&BARE) > 0.0);
     assert_eq!(crossing_area(&REFINED), 0.0);
@@ -171,7 +171,7 @@ fn an_open_mesh_is_deformed_without_a_volume() {
 fn an_index_out_of_range_is_refused() {
     let mut sphere = primitives::icosphere(1.0, 1);
     sphere.triangles[7][2] = 99;
-    let error = deform(&sphere, &[press(0.125)], &BARE, &Silent).unwrap_err();
+    let error = deform(&sphere, &[press(0.125)], &BARE, &NoProgress).unwrap_err();
     assert!(matches!(error, DeformError::Mesh(_)) && error.to_string().contains("99"), "{error}");
 }
 
@@ -209,7 +209,7 @@ fn points_alone_flow_as_the_vertices_do() {
     let sphere = primitives::icosphere(1.0, 3);
     let strokes = [press(0.125)];
     let deformed = run(&sphere, &strokes, &REFINED);
-    let points = crate::flow_points(&sphere.positions, &strokes, &Silent).unwrap();
+    let points = crate::advect_points(&sphere.positions, &strokes, &NoProgress).unwrap();
     assert_eq!(points, deformed.mesh.positions[..points.len()]);
 }
 
@@ -244,5 +244,5 @@ fn two_sides_without_a_volume_deform_without_one() {
 #[test]
 fn a_volume_beyond_all_numbers_is_refused() {
     let sphere = primitives::icosphere(1e150, 2);
-    assert_eq!(deform(&sphere, &[], &BARE, &Silent).unwrap_err(), DeformError::VolumeOverflow);
+    assert_eq!(deform(&sphere, &[], &BARE, &NoProgress).unwrap_err(), DeformError::VolumeOverflow);
 }

@@ -1,6 +1,8 @@
 use std::sync::Arc;
 
-use isochore_mesh::{Distance, DistanceField, DistanceFieldOptions, Ellipsoid, Padding, Silent, Sphere, primitives};
+use isochore_mesh::{
+    Distance, DistanceField, DistanceFieldOptions, Ellipsoid, NoProgress, Padding, Sphere, primitives,
+};
 
 use super::*;
 use crate::{
@@ -85,7 +87,7 @@ fn no_motion_gets_a_faster_flow() {
 fn a_sampled_mesh_gets_nearly_the_gauge_of_its_shape() {
     let mesh = primitives::icosphere(0.4, 4);
     let options = DistanceFieldOptions { resolution: 32, padding: Padding::Reach(0.3), ..Default::default() };
-    let sampled = DistanceField::new(&mesh, &options, &Silent).unwrap();
+    let sampled = DistanceField::new(&mesh, &options, &NoProgress).unwrap();
     let gauge = fitted(&sampled);
     // A mesh of 5120 triangles is off its sphere by 1e-3 of the radius, and its normals by as much times a few cells.
     assert!(along_surface(DVec3::splat(0.4), Some(&gauge), DVec3::ZERO, DVec3::Y)[1] < 2e-3);

@@ -1,7 +1,7 @@
 use std::{f64::consts::FRAC_PI_2, sync::Arc};
 
 use glam::DVec3;
-use isochore_mesh::{Capsule, Silent, Sphere, TriMesh, primitives};
+use isochore_mesh::{Capsule, NoProgress, Sphere, TriMesh, primitives};
 
 use super::*;
 use crate::{DeformOptions, Deformed, Move, Pose, Profile, RefineOptions, Tool, deform, rotation_from_vector};
@@ -20,7 +20,7 @@ fn step_of(stroke: &Stroke) -> f64 {
 }
 
 fn run(mesh: &TriMesh, stroke: Stroke, options: &DeformOptions) -> Deformed {
-    deform(mesh, &[stroke], options, &Silent).unwrap()
+    deform(mesh, &[stroke], options, &NoProgress).unwrap()
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn the_lock_adds_no_crossings() {
     };
     let deformed = on(1);
     let is_told = |note: &Note| matches!(note, Note::LockCrossings { .. });
-    let found = isochore_mesh::SelfIntersections::of(&deformed.mesh, &Silent).unwrap();
+    let found = isochore_mesh::SelfIntersections::of(&deformed.mesh, &NoProgress).unwrap();
     assert!(found.triangles().is_empty() || deformed.receipt.notes.iter().any(is_told), "{:?}", deformed.receipt);
     assert_eq!(deformed.mesh, on(2).mesh);
     assert_eq!(deformed.mesh, on(8).mesh);

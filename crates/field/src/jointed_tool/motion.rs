@@ -159,7 +159,7 @@ impl MovingField for PostureChange {
         self.top_speed(|index| self.tool.supports[index])
     }
 
-    fn carrying_speed(&self) -> f64 {
+    fn core_speed(&self) -> f64 {
         self.top_speed(|_| 0.0)
     }
 

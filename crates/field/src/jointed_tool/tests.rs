@@ -109,7 +109,7 @@ fn the_core_of_every_bone_follows_its_bone() {
                 continue;
             }
             let mut moved = [point];
-            stroke.advance(&mut moved);
+            stroke.advect_chunk(&mut moved);
             let expected = pose_of(&tool, &keys[keys.len() - 1], core as usize, point);
             // Roundings of a hundred closed steps.
             assert!(moved[0].distance(expected) < 1e-13, "bone {core} at {point}");
@@ -160,7 +160,7 @@ fn bones_that_move_as_one_are_one_rigid_body() {
         let mut inside = 0;
         for point in scattered_points(20_000, 0.9) {
             let block = evaluate(&*field, point);
-            if block.share.value[0] == 1.0 {
+            if block.weight.value[0] == 1.0 {
                 let local = now.rotation.conjugate() * (point - now.translation);
                 let expected = now.rotation * twist.velocity(local);
                 // Roundings near 1e-16 of potentials, times gradients of the shares up to 1/ε = 160.
@@ -225,7 +225,7 @@ fn what_may_not_be_touched_is_not_moved_and_the_first_part_ends_on_the_way() {
         let stroke = Stroke::Field(FieldStroke::new(tool.motions(&keys).unwrap(), 0.25).unwrap());
         let points = scattered_points(400, 2.0);
         let mut moved = points.clone();
-        stroke.advance(&mut moved);
+        stroke.advect_chunk(&mut moved);
         let mut untouchable = 0;
         for (point, moved) in points.iter().zip(&moved) {
             if !stroke.may_touch(*point, 0.0) {
@@ -247,8 +247,8 @@ fn speeds_are_bounds() {
                 for index in 1..20 {
                     let time = 0.05 * f64::from(index);
                     let speed = (at(time + 1e-5) - at(time - 1e-5)).length() / 2e-5;
-                    assert!(speed < motion.carrying_speed() * (1.0 + 1e-9), "leg {leg}, bone {bone}: {speed}");
-                    assert!(motion.carrying_speed() < motion.approach_speed());
+                    assert!(speed < motion.core_speed() * (1.0 + 1e-9), "leg {leg}, bone {bone}: {speed}");
+                    assert!(motion.core_speed() < motion.approach_speed());
                 }
             }
         }
@@ -270,13 +270,13 @@ fn bones_that_are_no_tree_are_refused() {
 
 #[test]
 fn a_sampled_bone_must_reach_as_far_as_is_said() {
-    use isochore_mesh::{DistanceField, DistanceFieldOptions, Padding, Silent, primitives};
+    use isochore_mesh::{DistanceField, DistanceFieldOptions, NoProgress, Padding, primitives};
     let mesh = primitives::icosphere(0.2, 2);
     let shapes = [(mesh.bounds(), SUPPORT); 2];
     let least = JointedTool::least_reach(shapes);
     let sampled = |reach: f64| {
         let options = DistanceFieldOptions { resolution: 16, padding: Padding::Reach(reach), ..Default::default() };
-        let distance = DistanceField::new(&mesh, &options, &Silent).unwrap();
+        let distance = DistanceField::new(&mesh, &options, &NoProgress).unwrap();
         let tool = Arc::new(Tool::new(Arc::new(distance), SUPPORT, Profile::Quintic).unwrap());
         let bone = |parent| Bone { tool: Arc::clone(&tool), rest: Pose::IDENTITY, joint: DVec3::ZERO, parent };
         JointedTool::new(vec![bone(None), bone(Some(0))])

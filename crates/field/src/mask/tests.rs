@@ -1,13 +1,12 @@
 use std::f64::consts::FRAC_PI_2;
 
-use isochore_mesh::{Aabb, Capsule, Silent, Sphere, TriMesh, primitives};
+use isochore_mesh::{Aabb, Capsule, NoProgress, Sphere, TriMesh, primitives};
 
 use super::*;
 use crate::{
     Bend, DeformOptions, Field, FieldBlock, Move, MovingField, Pose, Profile, RefineOptions, Stroke, Tool, Twist,
-    deform,
+    advect_points, deform,
     finite_differences::{deviation, scattered_points},
-    flow_points,
     flux::{QUADRATURE_NOISE, worst_field_flux},
     rotation_from_vector,
 };
@@ -118,8 +117,8 @@ impl MovingField for MaskedVelocity {
     fn approach_speed(&self) -> f64 {
         self.0.approach_speed()
     }
-    fn carrying_speed(&self) -> f64 {
-        self.0.carrying_speed()
+    fn core_speed(&self) -> f64 {
+        self.0.core_speed()
     }
     fn feature_size(&self) -> f64 {
         self.0.feature_size()
@@ -161,7 +160,7 @@ fn masking_the_velocity_breaks_the_volume_and_masking_the_potential_does_not() {
     let refine = RefineOptions { volume: 1e-5, ..RefineOptions::default() };
     let options = DeformOptions { refine: Some(refine), lock: false };
     let [wrong, right] = [wrong, right].map(|stroke| {
-        let receipt = deform(&primitives::icosphere(1.0, 4), &[stroke], &options, &Silent).unwrap().receipt;
+        let receipt = deform(&primitives::icosphere(1.0, 4), &[stroke], &options, &NoProgress).unwrap().receipt;
         assert!(receipt.max_displacement > 0.2);
         receipt.volume_before_lock.unwrap() / receipt.volume_before.unwrap() - 1.0
     });
@@ -200,7 +199,7 @@ fn pinned_points_keep_their_bits() {
         scattered_points(100, 0.11).into_iter().map(|point| point + DVec3::new(0.1, 0.0, 0.9)).collect();
     points.push(DVec3::new(0.1, -0.0, 0.9));
     let free = DVec3::new(0.4, 0.0, 0.9);
-    let carried = flow_points(&[&points[..], &[free]].concat(), &strokes, &Silent).unwrap();
+    let carried = advect_points(&[&points[..], &[free]].concat(), &strokes, &NoProgress).unwrap();
     for (point, carried) in points.iter().zip(&carried) {
         assert_eq!(bits(*point), bits(*carried));
     }
@@ -216,7 +215,7 @@ fn what_no_mask_touches_flows_as_without() {
     let masked = stroke.masked(&far, BOUNDS, 0.1).unwrap();
     let points = scattered_points(200, 1.0);
     // The far pin is as narrow as a third of the support: finer steps, the same flow up to their error of order four.
-    let [a, b] = [plain, masked].map(|stroke| flow_points(&points, &[stroke], &Silent).unwrap());
+    let [a, b] = [plain, masked].map(|stroke| advect_points(&points, &[stroke], &NoProgress).unwrap());
     assert!(a.iter().zip(&b).all(|(a, b)| a.distance(*b) < 1e-4));
 }
 
@@ -230,10 +229,10 @@ fn integrated_twists_and_bends_converge_to_the_exact_ones() {
     let far = pinned(vec![pin([9.0, 0.0, 0.0], 0.1, 5.0)]);
     let points = scattered_points(100, 1.0);
     for stroke in strokes {
-        let exact = flow_points(&points, std::slice::from_ref(&stroke), &Silent).unwrap();
+        let exact = advect_points(&points, std::slice::from_ref(&stroke), &NoProgress).unwrap();
         let error = |step: f64| {
             let masked = stroke.masked(&far, BOUNDS, step).unwrap();
-            let carried = flow_points(&points, &[masked], &Silent).unwrap();
+            let carried = advect_points(&points, &[masked], &NoProgress).unwrap();
             carried.iter().zip(&exact).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
         };
         let [coarse, fine] = [0.2, 0.1].map(error);
@@ -249,7 +248,7 @@ fn mirrored_flows_are_symmetric_and_stay_on_their_side() {
     let points = scattered_points(300, 0.8);
     let images: Vec<DVec3> = points.iter().map(|point| *point * DVec3::new(-1.0, 1.0, 1.0)).collect();
     let on_plane: Vec<DVec3> = points.iter().map(|point| *point * DVec3::new(0.0, 1.0, 1.0)).collect();
-    let [a, b, c] = [&points, &images, &on_plane].map(|points| flow_points(points, &strokes, &Silent).unwrap());
+    let [a, b, c] = [&points, &images, &on_plane].map(|points| advect_points(points, &strokes, &NoProgress).unwrap());
     let mut largest: f64 = 0.0;
     for ((a, b), c) in a.iter().zip(b).zip(c) {
         // Planes across an axis reflect without rounding.
@@ -361,7 +360,7 @@ fn held_vertices_keep_their_bits_and_the_volume_stays() {
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let options = DeformOptions::default();
-        pool.install(|| deform(&sphere, std::slice::from_ref(&press), &options, &Silent).unwrap())
+        pool.install(|| deform(&sphere, std::slice::from_ref(&press), &options, &NoProgress).unwrap())
     };
     let deformed = on(1);
     for (index, weight) in weights.iter().enumerate() {
@@ -385,7 +384,7 @@ fn a_pin_smaller_than_the_triangles_is_not_missed() {
     let twist = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Z, 0.25 * FRAC_PI_2).unwrap());
     let masked = twist.masked(&mask, BOUNDS, 0.125).unwrap();
     let options = DeformOptions { refine: Some(RefineOptions::default()), lock: false };
-    let deformed = deform(&cube, &[masked], &options, &Silent).unwrap();
+    let deformed = deform(&cube, &[masked], &options, &NoProgress).unwrap();
     let held = deformed.rest.positions.iter().zip(&deformed.mesh.positions);
     let held: Vec<_> = held.filter(|(rest, _)| rest.distance(DVec3::new(0.3, -0.1, 1.0)) < 0.05).collect();
     assert!(!held.is_empty());
@@ -401,8 +400,8 @@ fn motions_that_their_mirror_images_undo_are_refused() {
     let undone =
         |stroke: &Stroke, mask| stroke.masked(mask, BOUNDS, 0.1).err() == Some(crate::StrokeError::UndoneByMirror);
     assert!(undone(&twist, &across) && undone(&twist, &along) && undone(&bend, &along));
-    let plain = flow_points(&[DVec3::ONE], std::slice::from_ref(&bend), &Silent).unwrap();
-    let same = flow_points(&[DVec3::ONE], &[bend.masked(&across, BOUNDS, 0.01).unwrap()], &Silent).unwrap();
+    let plain = advect_points(&[DVec3::ONE], std::slice::from_ref(&bend), &NoProgress).unwrap();
+    let same = advect_points(&[DVec3::ONE], &[bend.masked(&across, BOUNDS, 0.01).unwrap()], &NoProgress).unwrap();
     // Order four: 0.01⁴ times derivatives of the order of the third power of the rate, three.
     assert!(plain[0].distance(same[0]) < 1e-6);
 }

@@ -2,13 +2,13 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use isochore_mesh::{
-    Aabb, Distance, DistanceBlock, LANES, PointBlock, SelfIntersections, Silent, Sphere, TriMesh, primitives,
+    Aabb, Distance, DistanceBlock, LANES, NoProgress, PointBlock, SelfIntersections, Sphere, TriMesh, primitives,
 };
 
 use super::*;
 use crate::{
-    DeformError, DeformOptions, Deformed, FlowError, Move, Note, Pose, Profile, RefineOptions, Stroke, Twist, deform,
-    flow_points, rotation_from_vector,
+    AdvectError, DeformError, DeformOptions, Deformed, Move, Note, Pose, Profile, RefineOptions, Stroke, Twist,
+    advect_points, deform, rotation_from_vector,
 };
 
 /// Radius, thickness, and height and wavelength of the relief of the coin.
@@ -99,7 +99,7 @@ fn coin(steps: usize) -> Stroke {
 }
 
 fn run(mesh: &TriMesh, strokes: &[Stroke], options: &DeformOptions) -> Deformed {
-    deform(mesh, strokes, options, &Silent).unwrap()
+    deform(mesh, strokes, options, &NoProgress).unwrap()
 }
 
 fn volume_error(deformed: &Deformed) -> f64 {
@@ -137,7 +137,7 @@ fn the_volume_is_kept_and_the_tool_touches_without_cutting() {
         let covered = covered(&deformed);
         assert!(covered.len() > 500);
         assert!(covered.iter().all(|distance| distance.abs() <= ROUNDING));
-        assert!(SelfIntersections::of(&deformed.mesh, &Silent).unwrap().triangles().is_empty());
+        assert!(SelfIntersections::of(&deformed.mesh, &NoProgress).unwrap().triangles().is_empty());
         assert_eq!(deformed.receipt.notes, []);
     }
 }
@@ -314,7 +314,7 @@ fn threads_do_not_change_the_bits() {
 }
 
 fn error(mesh: &TriMesh, stroke: Stroke) -> DeformError {
-    deform(mesh, &[ball_press(), stroke], &refined(), &Silent).unwrap_err()
+    deform(mesh, &[ball_press(), stroke], &refined(), &NoProgress).unwrap_err()
 }
 
 #[test]
@@ -330,8 +330,8 @@ fn what_encloses_nothing_is_refused() {
 
 #[test]
 fn points_alone_are_refused() {
-    let found = flow_points(&[DVec3::ZERO], &[ball_press(), coin(5)], &Silent).unwrap_err();
-    assert_eq!(found, FlowError::Stamp { stroke: 1 });
+    let found = advect_points(&[DVec3::ZERO], &[ball_press(), coin(5)], &NoProgress).unwrap_err();
+    assert_eq!(found, AdvectError::Stamp { stroke: 1 });
 }
 
 #[test]
@@ -340,7 +340,7 @@ fn a_tool_that_starts_inside_is_refused() {
     // Even where no vertex of the mesh as given lies in the tool.
     for mesh in [slab(20), primitives::box_mesh(DVec3::new(1.2, 1.2, TOP), [1, 1, 1])] {
         let stamp = Stroke::Stamp(Stamp::new(tool(Coin), keys.clone(), 0.125, None).unwrap());
-        let found = deform(&mesh, &[stamp], &refined(), &Silent).unwrap_err();
+        let found = deform(&mesh, &[stamp], &refined(), &NoProgress).unwrap_err();
         assert!(
             matches!(found, DeformError::Stamp { stroke: 0, source: StampError::StartsInside { depth, .. } }
                 if depth > 0.05 && depth < 0.2),
@@ -356,7 +356,7 @@ fn a_stamp_that_has_nowhere_to_raise_is_refused() {
     let narrow = Arc::new(Tool::new(Arc::new(plate), 0.02, Profile::Quintic).unwrap());
     let keys = vec![Pose::at(DVec3::Z * 0.7), Pose::at(DVec3::Z * 0.4)];
     let stamp = Stroke::Stamp(Stamp::new(narrow, keys, 1.0, Some(0.2)).unwrap());
-    let found = deform(&slab(20), &[stamp], &refined(), &Silent).unwrap_err();
+    let found = deform(&slab(20), &[stamp], &refined(), &NoProgress).unwrap_err();
     assert!(matches!(found, DeformError::Stamp { source: StampError::NoRoom { .. }, .. }), "{found}");
 }
 
@@ -365,7 +365,7 @@ fn a_stamp_through_a_sheet_is_said_and_stays_finite() {
     let sheet = primitives::box_mesh(DVec3::new(1.2, 1.2, 0.05), [40, 40, 2]);
     let keys = vec![Pose::at(DVec3::Z * 0.1), Pose::at(DVec3::Z * -0.2)];
     let stamp = Stroke::Stamp(Stamp::new(tool(Coin), keys, 0.125, Some(0.05)).unwrap());
-    match deform(&sheet, &[stamp], &refined(), &Silent) {
+    match deform(&sheet, &[stamp], &refined(), &NoProgress) {
         Ok(deformed) => {
             assert_eq!(deformed.receipt.notes, [Note::StampThrough { stroke: 0 }]);
             assert!(deformed.mesh.positions.iter().all(|position| position.is_finite()));

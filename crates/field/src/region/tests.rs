@@ -124,7 +124,7 @@ fn the_inside_moves_rigidly_and_the_outside_rests() {
             for point in scattered_points(100, 1.0) {
                 let distance = inner.sample(placement.rotation.conjugate() * (point - placement.translation)).0;
                 let mut moved = [point];
-                stroke.advance(&mut moved);
+                stroke.advect_chunk(&mut moved);
                 if distance < -1e-9 {
                     // Roundings of some dozens of closed steps.
                     assert!(moved[0].distance(origin + turn * (point - origin)) < 1e-13, "{name} {point}");

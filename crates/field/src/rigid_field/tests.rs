@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use isochore_mesh::{
-    Capsule, Distance, DistanceField, DistanceFieldOptions, Ellipsoid, Padding, RoundedBox, Silent, Sphere, Torus,
+    Capsule, Distance, DistanceField, DistanceFieldOptions, Ellipsoid, NoProgress, Padding, RoundedBox, Sphere, Torus,
     primitives,
 };
 
@@ -135,7 +135,7 @@ fn a_separate_gradient_is_found_out_by_its_flux() {
 fn a_tool_sampled_from_a_mesh_has_no_net_flux() {
     let mesh = primitives::box_mesh(DVec3::new(0.3, 0.2, 0.4), [3, 2, 4]);
     let options = DistanceFieldOptions { resolution: 32, padding: Padding::Reach(0.25), ..Default::default() };
-    let sampled = DistanceField::new(&mesh, &options, &Silent).unwrap();
+    let sampled = DistanceField::new(&mesh, &options, &NoProgress).unwrap();
     for profile in [Profile::Quintic, Profile::Contact] {
         let tool = Tool::new(Arc::new(sampled.clone()), 0.25, profile).unwrap();
         let flux = flux(&RigidField::new(&tool, TWIST), 0.5);

@@ -78,7 +78,7 @@ fn the_ring_carries_its_core_along_exactly() {
     let mut points = [start, TILTED.center + around * 3.0];
     let stroke = FieldStroke::new(vec![Arc::new(ring)], 0.125).unwrap();
     let steps = stroke.steps();
-    Stroke::Field(stroke).advance(&mut points);
+    Stroke::Field(stroke).advect_chunk(&mut points);
     // 0.7 in steps of an eighth of the tube's radius: 22.4.
     assert_eq!(steps, 23);
     // One rounding a step of coordinates below two.

@@ -215,7 +215,7 @@ fn a_straight_core_moves_as_told() {
     let flow = |motion| {
         let strip = Strip::new(StripSpine::through(&line).unwrap(), round(), motion).unwrap();
         let mut points = [DVec3::new(-0.2, 0.1, 0.15), DVec3::new(0.0, 0.0, 0.6)];
-        Stroke::Field(FieldStroke::new(vec![Arc::new(strip)], 0.125).unwrap()).advance(&mut points);
+        Stroke::Field(FieldStroke::new(vec![Arc::new(strip)], 0.125).unwrap()).advect_chunk(&mut points);
         points
     };
     let [along, outside] = flow(StripMotion::Along { distance: 0.5 });
@@ -238,7 +238,7 @@ fn what_lies_on_the_spine_stays_on_it() {
         let stroke = Stroke::Field(FieldStroke::new(vec![Arc::new(strip)], step).unwrap());
         // Between the ends that fade.
         let mut points: Vec<DVec3> = (8..=13).map(|i| start.position(start.domain().1 * f64::from(i) / 20.0)).collect();
-        stroke.advance(&mut points);
+        stroke.advect_chunk(&mut points);
         points.iter().map(|point| ClosestPoint::new(&finish).closest(*point).distance).fold(0.0, f64::max)
     };
     let [coarse, fine] = [0.5, 0.25].map(off);
@@ -279,7 +279,7 @@ fn what_may_not_be_touched_is_not_moved() {
         let stroke = Stroke::Field(FieldStroke::new(vec![Arc::new(strip)], 0.2).unwrap());
         let points = scattered_points(900, 1.8);
         let mut moved = points.clone();
-        stroke.advance(&mut moved);
+        stroke.advect_chunk(&mut moved);
         let untouchable = points.iter().zip(&moved).filter(|(point, moved)| {
             let is_untouchable = !stroke.may_touch(**point, 0.0);
             assert!(!is_untouchable || point == moved);

@@ -30,7 +30,7 @@ impl Bend {
         Ok(Self { axis: Axis::new(origin, axis)?, radians_per_unit2 })
     }
 
-    pub(super) fn advance(&self, points: &mut [DVec3]) -> u64 {
+    pub(super) fn advect_chunk(&self, points: &mut [DVec3]) -> u64 {
         for point in points.iter_mut() {
             let square = (*point - self.axis.origin).length_squared();
             *point = self.axis.rotated(*point, self.radians_per_unit2 * square);
@@ -57,7 +57,7 @@ mod tests {
     fn golden_flow() {
         // Equation 12.6 as printed turns at −5|x|², here for half a unit of time.
         let mut points = [DVec3::new(0.3, -0.4, 0.5)];
-        Bend::new(DVec3::ZERO, DVec3::new(1.0, 2.0, 2.0), -2.5).unwrap().advance(&mut points);
+        Bend::new(DVec3::ZERO, DVec3::new(1.0, 2.0, 2.0), -2.5).unwrap().advect_chunk(&mut points);
         let golden = DVec3::new(-0.436756416361175, -0.081686472536101, 0.550064680716689);
         assert!(points[0].distance(golden) < 1e-14);
     }

@@ -122,9 +122,9 @@ impl FieldStroke {
         Self::from_spans(self.spans.iter().map(masked).collect(), self.step)
     }
 
-    pub(super) fn advance(&self, points: &mut [DVec3]) -> u64 {
+    pub(super) fn advect_chunk(&self, points: &mut [DVec3]) -> u64 {
         let mut wake = vec![0; points.len()];
-        self.legs.iter().map(|leg| leg.advance(points, &mut wake)).sum()
+        self.legs.iter().map(|leg| leg.advect_chunk(points, &mut wake)).sum()
     }
 
     /// Whether the support may touch the ball, as it stands, at any time; false is certain.
@@ -159,7 +159,7 @@ impl FieldStroke {
 impl Leg {
     fn new(span: &Span, key: usize, step: f64) -> Result<Self, StrokeError> {
         let Span { field, end } = span;
-        let travel = field.carrying_speed() * end;
+        let travel = field.core_speed() * end;
         let count = (travel / (step * field.feature_size())).ceil().max(1.0);
         if count.is_nan() || count > MAX_STEPS as f64 {
             return Err(StrokeError::TooManySteps { key, steps: count });
@@ -173,7 +173,7 @@ impl Leg {
         self.instants.len() / 2
     }
 
-    fn advance(&self, points: &mut [DVec3], wake: &mut [usize]) -> u64 {
+    fn advect_chunk(&self, points: &mut [DVec3], wake: &mut [usize]) -> u64 {
         let mut evaluations = 0;
         wake.fill(0);
         let mut due = Vec::new();

@@ -120,9 +120,9 @@ impl Move {
         if since == 1.0 { self.keys[key + 1] } else { self.keys[key].moved(&self.segments[key].twist, since) }
     }
 
-    pub(super) fn advance(&self, points: &mut [DVec3]) -> u64 {
+    pub(super) fn advect_chunk(&self, points: &mut [DVec3]) -> u64 {
         let mut travelers = Travelers::new(points);
-        self.segments.iter().map(|segment| segment.advance(&self.tool, &mut travelers)).sum()
+        self.segments.iter().map(|segment| segment.advect_chunk(&self.tool, &mut travelers)).sum()
     }
 
     /// Whether the support may touch the ball, as it stands, at any time; false is certain.
@@ -177,7 +177,7 @@ impl Segment {
         1.0 / self.steps() as f64
     }
 
-    fn advance(&self, tool: &Tool, travelers: &mut Travelers<'_>) -> u64 {
+    fn advect_chunk(&self, tool: &Tool, travelers: &mut Travelers<'_>) -> u64 {
         let bounds = tool.support_bounds();
         let mut resting =
             travelers.near(|center, radius| self.comes_near(center, radius, |local| bounds.distance(local)));

@@ -22,11 +22,11 @@ impl Stroke {
     }
 
     /// Carries `points` through the stroke in place, in parallel, and returns how many times the field was evaluated. Each point
-    /// gets the bits that [`flow_points`](crate::flow_points) gives it, whatever the other points. A stamp carries nothing.
-    pub fn carry(&self, points: &mut [DVec3]) -> u64 {
+    /// gets the bits that [`advect_points`](crate::advect_points) gives it, whatever the other points. A stamp carries nothing.
+    pub fn advect(&self, points: &mut [DVec3]) -> u64 {
         if points.len() <= CHUNK {
-            return self.advance(points);
+            return self.advect_chunk(points);
         }
-        points.par_chunks_mut(CHUNK).map(|chunk| self.advance(chunk)).sum()
+        points.par_chunks_mut(CHUNK).map(|chunk| self.advect_chunk(chunk)).sum()
     }
 }

@@ -29,7 +29,7 @@ impl Twist {
         Ok(Self { axis: Axis::new(origin, axis)?, radians_per_unit })
     }
 
-    pub(super) fn advance(&self, points: &mut [DVec3]) -> u64 {
+    pub(super) fn advect_chunk(&self, points: &mut [DVec3]) -> u64 {
         for point in points.iter_mut() {
             let height = self.axis.direction.dot(*point - self.axis.origin);
             *point = self.axis.rotated(*point, self.radians_per_unit * height);
@@ -59,7 +59,7 @@ mod tests {
 
     fn twisted(radians_per_unit: f64) -> DVec3 {
         let mut points = [POINT];
-        Twist::new(DVec3::ZERO, AXIS, radians_per_unit).unwrap().advance(&mut points);
+        Twist::new(DVec3::ZERO, AXIS, radians_per_unit).unwrap().advect_chunk(&mut points);
         points[0]
     }
 
@@ -75,7 +75,7 @@ mod tests {
     #[test]
     fn points_on_the_neutral_plane_keep_their_bits() {
         let mut points = [DVec3::new(0.1, 0.7, 0.3)];
-        Twist::new(DVec3::new(0.0, 0.0, 0.3), DVec3::Z, 1.0).unwrap().advance(&mut points);
+        Twist::new(DVec3::new(0.0, 0.0, 0.3), DVec3::Z, 1.0).unwrap().advect_chunk(&mut points);
         assert_eq!(points[0], DVec3::new(0.1, 0.7, 0.3));
     }
 

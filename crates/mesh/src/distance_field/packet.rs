@@ -128,7 +128,7 @@ mod tests {
     use multiversion::multiversion;
 
     use super::*;
-    use crate::{DistanceField, DistanceFieldOptions, Silent, primitives};
+    use crate::{DistanceField, DistanceFieldOptions, NoProgress, primitives};
 
     /// Nearest triangles and squared distances for packets along the diagonal of the grid, each beginning from what the last found.
     #[inline(always)]
@@ -159,7 +159,7 @@ mod tests {
     fn packets_find_the_same_bits_in_registers_of_any_width() {
         let mesh = primitives::icosphere(1.0, 4);
         let options = DistanceFieldOptions { resolution: 12, ..Default::default() };
-        let grid = *DistanceField::new(&mesh, &options, &Silent).unwrap().grid();
+        let grid = *DistanceField::new(&mesh, &options, &NoProgress).unwrap().grid();
         let search = PacketSearch::new(&Bvh::new(&mesh.positions, &mesh.triangles).unwrap(), &grid);
         // Without the attribute, the search is compiled for the least that the target has.
         let narrowest = along_the_diagonal(&search, &grid);

@@ -123,7 +123,7 @@ pub(super) fn weight_derivatives<T: Real>(t: T) -> [T; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Silent;
+    use crate::NoProgress;
 
     fn samples(count: usize) -> Vec<f32> {
         // Any numbers without structure: multiples of an irrational, fractional parts.
@@ -134,7 +134,7 @@ mod tests {
     fn spline_goes_through_the_samples() {
         for dims in [[7, 6, 5], [2, 9, 3], [1, 1, 8], [40, 3, 2]] {
             let samples = samples(dims.iter().product());
-            let coefficients = coefficients(&samples, dims, &Silent).unwrap();
+            let coefficients = coefficients(&samples, dims, &NoProgress).unwrap();
             let [nx, ny, nz] = dims;
             // At a node the weights are 1/6, 4/6, 1/6 along each axis, across the ends mirrored.
             let at = |i: isize, nodes: usize| {

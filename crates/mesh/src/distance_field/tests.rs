@@ -3,11 +3,11 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::primitives::{box_mesh, icosphere};
-use crate::{LANES, MeshDistance, Silent};
+use crate::{LANES, MeshDistance, NoProgress};
 
 fn field(mesh: &TriMesh, resolution: usize, padding: Padding) -> DistanceField {
     let options = DistanceFieldOptions { resolution, padding, ..Default::default() };
-    DistanceField::new(mesh, &options, &Silent).unwrap()
+    DistanceField::new(mesh, &options, &NoProgress).unwrap()
 }
 
 /// A closed shape with edges, hollows and triangles of many sizes, about 2 across.
@@ -165,7 +165,7 @@ fn spline_goes_through_the_samples_and_reaches_as_far_as_asked() {
             assert_eq!(value, f64::INFINITY);
         }
     }
-    let exact = MeshDistance::new(&mesh, &Silent).unwrap();
+    let exact = MeshDistance::new(&mesh, &NoProgress).unwrap();
     let around = field.bounds().expanded(1.2 * reach);
     for point in scattered(around, 20_000) {
         assert!(exact.sample(point).0 > reach || field.sample(point).0.is_finite());
@@ -257,7 +257,7 @@ fn band_ends_the_distances() {
     let all = field(&mesh, 24, Padding::Reach(0.4));
     let options =
         DistanceFieldOptions { resolution: 24, padding: Padding::Reach(0.4), band: 0.3, ..Default::default() };
-    let band = DistanceField::new(&mesh, &options, &Silent).unwrap();
+    let band = DistanceField::new(&mesh, &options, &NoProgress).unwrap();
     assert_eq!(all.grid(), band.grid());
     for (&all, &within) in all.samples().iter().zip(band.samples()) {
         assert!((f64::from(within) - f64::from(all).clamp(-0.3, 0.3)).abs() <= band.sample_error());
@@ -285,7 +285,8 @@ fn open_mesh_is_sampled_too() {
 #[test]
 fn bad_input_is_named() {
     let mesh = icosphere(1.0, 1);
-    let with = |mesh: &TriMesh, options: DistanceFieldOptions| DistanceField::new(mesh, &options, &Silent).unwrap_err();
+    let with =
+        |mesh: &TriMesh, options: DistanceFieldOptions| DistanceField::new(mesh, &options, &NoProgress).unwrap_err();
     let options = DistanceFieldOptions::default();
     assert_eq!(with(&TriMesh::default(), options), DistanceFieldError::Mesh(BvhError::Empty));
     assert_eq!(

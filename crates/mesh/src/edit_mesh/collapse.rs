@@ -55,13 +55,13 @@ impl EditMesh {
         self.join(far_apex_to_kept, kept_to_far_apex);
         let gone = [half_edge / 3, twin / 3];
         let is_gone = |half_edge: u32| half_edge != NONE && gone.contains(&(half_edge / 3));
-        if is_gone(self.leaving(kept)) {
+        if is_gone(self.outgoing(kept)) {
             self.leaving.set(kept, kept_to_apex);
         }
-        if is_gone(self.leaving(apex)) {
+        if is_gone(self.outgoing(apex)) {
             self.leaving.set(apex, apex_to_kept);
         }
-        if is_gone(self.leaving(far_apex)) {
+        if is_gone(self.outgoing(far_apex)) {
             self.leaving.set(far_apex, far_apex_to_kept);
         }
         self.leaving.set(removed, NONE);

@@ -12,7 +12,7 @@ impl EditMesh {
     /// The half-edges that leave `vertex`, beginning with [`leaving`](Self::leaving).
     #[inline]
     pub fn fan(&self, vertex: u32) -> Fan<'_> {
-        let first = self.leaving(vertex);
+        let first = self.outgoing(vertex);
         Fan { mesh: self, first, next: first }
     }
 

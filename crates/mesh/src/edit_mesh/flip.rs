@@ -41,10 +41,10 @@ impl EditMesh {
         self.join(half_edge, beyond_ad);
         self.join(twin, beyond_bc);
         self.join(to_c, to_d);
-        if self.leaving(a) == to_d {
+        if self.outgoing(a) == to_d {
             self.leaving.set(a, half_edge);
         }
-        if self.leaving(b) == to_c {
+        if self.outgoing(b) == to_c {
             self.leaving.set(b, twin);
         }
         // Half-edges that leave c and d are where they were: c→a and d→b.

@@ -29,7 +29,7 @@ impl EditMesh {
         self.join(3 * added + 1, beyond);
         self.join(next(half_edge), 3 * added + 2);
         self.leaving.set(vertex, 3 * added);
-        if self.leaving(end) == next(half_edge) {
+        if self.outgoing(end) == next(half_edge) {
             self.leaving.set(end, 3 * added + 1);
         }
         if twin == super::NONE {
@@ -43,10 +43,10 @@ impl EditMesh {
         self.join(3 * far_added, 3 * added);
         self.join(3 * far_added + 2, beyond);
         self.join(across, 3 * far_added + 1);
-        if self.leaving(end) == twin {
+        if self.outgoing(end) == twin {
             self.leaving.set(end, 3 * far_added);
         }
-        if self.leaving(far_apex) == across {
+        if self.outgoing(far_apex) == across {
             self.leaving.set(far_apex, 3 * far_added + 2);
         }
         Split { vertex, near: [near, added], far: Some([far, far_added]) }

@@ -154,19 +154,19 @@ fn places_are_taken_anew_once_the_edits_that_freed_them_are_recorded() {
     // A vertex that was there at first leaves its triangles to others, but not its number.
     record(&mut mesh, &|mesh| {
         let gone = collapse(mesh, 7);
-        let split = mesh.split(mesh.leaving(0));
+        let split = mesh.split(mesh.outgoing(0));
         assert!(!gone.contains(&split.near[1]) && split.vertex as usize == vertices);
     });
     record(&mut mesh, &|mesh| assert_eq!(collapse(mesh, vertices as u32).len(), 2));
     let mut delta = record(&mut mesh, &|mesh| {
-        let split = mesh.split(mesh.leaving(0));
+        let split = mesh.split(mesh.outgoing(0));
         assert_eq!(split.vertex as usize, vertices);
         assert!((split.near[1] as usize) < triangles && (split.far.unwrap()[1] as usize) < triangles);
     });
     assert_eq!((mesh.vertex_count(), mesh.triangles().len()), (vertices + 1, triangles + 2));
     // Undone, the places are free again, and the next to be taken.
     mesh.swap(&mut delta);
-    record(&mut mesh, &|mesh| assert_eq!(mesh.split(mesh.leaving(5)).vertex as usize, vertices));
+    record(&mut mesh, &|mesh| assert_eq!(mesh.split(mesh.outgoing(5)).vertex as usize, vertices));
     assert_sound(&mesh);
 }
 

@@ -5,11 +5,11 @@ use parry3d_f64::shape::{TriMesh as ParryMesh, TriMeshFlags};
 use proptest::prelude::*;
 
 use super::*;
-use crate::Silent;
+use crate::NoProgress;
 use crate::primitives::{box_mesh, icosphere};
 
 fn distance(mesh: &TriMesh) -> MeshDistance {
-    MeshDistance::new(mesh, &Silent).unwrap()
+    MeshDistance::new(mesh, &NoProgress).unwrap()
 }
 
 /// Spikes and dents: sharp edges of both kinds.

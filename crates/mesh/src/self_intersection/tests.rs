@@ -5,11 +5,11 @@ use parry3d_f64::shape::Triangle;
 use proptest::prelude::*;
 
 use super::*;
-use crate::{Silent, primitives::icosphere};
+use crate::{NoProgress, primitives::icosphere};
 
 fn pairs(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let mesh = TriMesh::new(positions.iter().map(|&p| DVec3::from_array(p)).collect(), triangles.to_vec());
-    SelfIntersections::of(&mesh, &Silent).unwrap().pairs().to_vec()
+    SelfIntersections::of(&mesh, &NoProgress).unwrap().pairs().to_vec()
 }
 
 /// Two triangles without common indices.
@@ -66,14 +66,14 @@ fn triangles_without_area_are_left_out() {
 #[test]
 fn interpenetrating_spheres_cross_in_a_band() {
     let sphere = icosphere(1.0, 3);
-    assert!(SelfIntersections::of(&sphere, &Silent).unwrap().is_empty());
+    assert!(SelfIntersections::of(&sphere, &NoProgress).unwrap().is_empty());
     let shift = dvec3(0.7, 0.1, 0.05);
     let count = sphere.positions.len() as u32;
     let mesh = TriMesh::new(
         sphere.positions.iter().copied().chain(sphere.positions.iter().map(|&p| p + shift)).collect(),
         sphere.triangles.iter().copied().chain(sphere.triangles.iter().map(|t| t.map(|v| v + count))).collect(),
     );
-    let found = SelfIntersections::of(&mesh, &Silent).unwrap();
+    let found = SelfIntersections::of(&mesh, &NoProgress).unwrap();
 
     // Slow second implementation: all pairs, with distances by another library. A pair nearer than its rounding would be
     // undecided; there is none.
@@ -111,7 +111,7 @@ fn same_pairs_for_any_number_of_threads() {
     }
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| SelfIntersections::of(&mesh, &Silent).unwrap())
+        pool.install(|| SelfIntersections::of(&mesh, &NoProgress).unwrap())
     };
     let one = with(1);
     assert!(!one.is_empty());

@@ -182,6 +182,6 @@ impl Surface {
 
     /// Whether a vertex lies inside one piece of the surface: no seam, no hard edge, no border of materials, no boundary at it.
     pub(super) fn is_free(&self, vertex: u32) -> bool {
-        self.topology.leaving(vertex) != NONE && self.topology.fan(vertex).all(|half_edge| self.is_seamless(half_edge))
+        self.topology.outgoing(vertex) != NONE && self.topology.fan(vertex).all(|half_edge| self.is_seamless(half_edge))
     }
 }

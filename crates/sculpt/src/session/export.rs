@@ -67,7 +67,7 @@ impl Session {
         if (vertex as usize) < self.surface.opened.positions.len() {
             return VertexOrigin::Vertex(vertex);
         }
-        let leaving = self.surface.topology.leaving(vertex);
+        let leaving = self.surface.topology.outgoing(vertex);
         let origin = (leaving != NONE).then(|| self.surface.render.get(self.surface.corner(leaving)).origin).flatten();
         // An inserted vertex that is there has triangles, and its render vertices come from somewhere.
         origin.map_or(VertexOrigin::Vertex(0), VertexOrigin::Point)

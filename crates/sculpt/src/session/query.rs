@@ -112,7 +112,7 @@ impl Session {
             }
         }
         let mut carried = points.clone();
-        stroke.carry(&mut carried);
+        stroke.advect(&mut carried);
         let arrows = points.into_iter().zip(carried).filter(|(point, carried)| point != carried);
         Ok(arrows.map(|(point, carried)| Arrow { point, shift: carried - point }).collect())
     }
@@ -179,7 +179,7 @@ impl Session {
     /// # Panics
     /// If there was never such a vertex.
     pub fn is_alive(&self, vertex: u32) -> bool {
-        self.surface.topology.leaving(vertex) != isochore_mesh::NONE || self.loose.binary_search(&vertex).is_ok()
+        self.surface.topology.outgoing(vertex) != isochore_mesh::NONE || self.loose.binary_search(&vertex).is_ok()
     }
 
     /// Vertices of a triangle; none where it was removed.

@@ -123,7 +123,7 @@ impl Pass<'_> {
     /// The half-edge between two vertices, if it is there, no end of it is frozen, no ball keeps it, and no mask holds it.
     fn editable(&self, [a, b]: [u32; 2], options: &InteractiveRefinement) -> Option<u32> {
         let topology = &self.surface.topology;
-        let is_fixed = |vertex: u32| topology.leaving(vertex) == NONE || self.surface.is_frozen(vertex);
+        let is_fixed = |vertex: u32| topology.outgoing(vertex) == NONE || self.surface.is_frozen(vertex);
         if is_fixed(a) || is_fixed(b) {
             return None;
         }

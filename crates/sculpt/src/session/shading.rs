@@ -39,7 +39,7 @@ impl Surface {
     /// Appends the render vertices of `vertex`. Triangles between two hard edges share a normal; across a mere seam of attributes
     /// the shading is smooth.
     fn shade_vertex(&self, vertex: u32, fan: &mut Vec<u32>, shaded: &mut Vec<Shaded>) {
-        let first = self.topology.leaving(vertex);
+        let first = self.topology.outgoing(vertex);
         if first == NONE {
             return;
         }

@@ -90,7 +90,7 @@ impl ActiveStroke {
     }
 
     /// Carries points of that surface through all that the stroke did so far. Returns how many times the fields were evaluated.
-    pub(super) fn carry(&self, points: &mut [DVec3]) -> u64 {
+    pub(super) fn advect(&self, points: &mut [DVec3]) -> u64 {
         let carry = |chunk: &mut [DVec3]| {
             let (mut within, mut carried) = (Vec::new(), Vec::new());
             let mut evaluations = 0;
@@ -102,7 +102,7 @@ impl ActiveStroke {
                 }
                 carried.clear();
                 carried.extend(within.iter().map(|&index| chunk[index]));
-                evaluations += segment.stroke.carry(&mut carried);
+                evaluations += segment.stroke.advect(&mut carried);
                 within.iter().zip(&carried).for_each(|(&index, &point)| chunk[index] = point);
             }
             evaluations

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use isochore_field::{Pose, rotation_from_vector};
-use isochore_mesh::{Origin, Silent, TriMesh, primitives::icosphere};
+use isochore_mesh::{NoProgress, Origin, TriMesh, primitives::icosphere};
 use isochore_sculpt::{
     Meshes,
     recipe::{Capsule, Profile, Sphere, Tool, ToolShape},
@@ -25,14 +25,14 @@ use isochore_sculpt::{
 fn brush() -> Arc<SessionTool> {
     let shape = ToolShape::Sphere(Sphere { radius: 0.2 });
     let tool = Tool { shape, support: 0.25, profile: Profile::Quintic, free_form: 0.0 };
-    Arc::new(SessionTool::new("brush", tool, &Meshes::new(), &Silent).unwrap())
+    Arc::new(SessionTool::new("brush", tool, &Meshes::new(), &NoProgress).unwrap())
 }
 
 /// A longer tool, with another profile.
 fn rod() -> Arc<SessionTool> {
     let shape = ToolShape::Capsule(Capsule { radius: 0.1, half_length: 0.3 });
     let tool = Tool { shape, support: 0.3, profile: Profile::Contact, free_form: 0.0 };
-    Arc::new(SessionTool::new("rod", tool, &Meshes::new(), &Silent).unwrap())
+    Arc::new(SessionTool::new("rod", tool, &Meshes::new(), &NoProgress).unwrap())
 }
 
 fn open(mesh: TriMesh) -> Session {

@@ -1,5 +1,5 @@
-use isochore_field::{Move, Stroke, StrokeError, flow_points};
-use isochore_mesh::{Silent, TriMesh, primitives::icosphere};
+use isochore_field::{Move, Stroke, StrokeError, advect_points};
+use isochore_mesh::{NoProgress, TriMesh, primitives::icosphere};
 use isochore_sculpt::{
     Meshes, Recipe,
     recipe::{Format, Mask, MirrorPlane, Pin},
@@ -29,7 +29,7 @@ fn vertices_go_where_the_flow_of_the_recorded_move_takes_them() {
             Pose { rotation: DQuat::from_xyzw(axis.x, axis.y, axis.z, libm::cos(half)), translation: key.at.into() }
         });
         let stroke = Stroke::Move(Move::new(Arc::clone(brush().tool()), keys.collect(), 0.125).unwrap());
-        let carried = flow_points(&rest, &[stroke], &Silent).unwrap();
+        let carried = advect_points(&rest, &[stroke], &NoProgress).unwrap();
         assert_eq!(&session.positions()[..rest.len()], &carried[..]);
         assert!(carried.iter().zip(&rest).filter(|(a, b)| a != b).count() > 30);
     }
@@ -56,10 +56,10 @@ fn the_log_gives_the_same_anywhere() {
         assert_eq!(read, log);
 
         // As bare points, and of a finer mesh, whose first vertices are the same.
-        let points = replay_points(&log, &meshes(mesh.clone()), &mesh.positions, &Silent).unwrap().points;
+        let points = replay_points(&log, &meshes(mesh.clone()), &mesh.positions, &NoProgress).unwrap().points;
         assert_eq!(&session.positions()[..points.len()], &points[..]);
         let finer = icosphere(1.0, 4).positions;
-        let points = replay_points(&log, &meshes(mesh.clone()), &finer, &Silent).unwrap().points;
+        let points = replay_points(&log, &meshes(mesh.clone()), &finer, &NoProgress).unwrap().points;
         assert_eq!(finer[..mesh.positions.len()], mesh.positions[..]);
         assert_eq!(&session.positions()[..mesh.positions.len()], &points[..mesh.positions.len()]);
 
@@ -67,19 +67,19 @@ fn the_log_gives_the_same_anywhere() {
         let mut plain = log.clone();
         plain.refine.enabled = false;
         assert!(plain.volume.lock);
-        let kept = isochore_sculpt::replay(&plain, &meshes(mesh.clone()), &Silent).unwrap().deformed;
+        let kept = isochore_sculpt::replay(&plain, &meshes(mesh.clone()), &NoProgress).unwrap().deformed;
         assert!(kept.receipt.lock_max_shift.is_some());
         // Rounding of a sum over some thousand triangles.
         assert!((kept.mesh.volume() / mesh.volume() - 1.0).abs() < 1e-13);
         plain.volume.lock = false;
-        let replayed = isochore_sculpt::replay(&plain, &meshes(mesh.clone()), &Silent).unwrap();
+        let replayed = isochore_sculpt::replay(&plain, &meshes(mesh.clone()), &NoProgress).unwrap();
         let count = mesh.positions.len();
         assert_eq!(replayed.deformed.receipt.lock_max_shift, None);
         assert_eq!(&session.positions()[..count], &replayed.deformed.mesh.positions[..count]);
 
         // And in another session.
         let mut again = Session::open(mesh, session_options(&log)).unwrap();
-        let receipts = again.replay(&log, &Meshes::new(), &UNREFINED, &Silent).unwrap();
+        let receipts = again.replay(&log, &Meshes::new(), &UNREFINED, &NoProgress).unwrap();
         assert_eq!(receipts.len(), 3);
         assert_eq!(&again.positions()[..count], &session.positions()[..count]);
         assert_eq!(again.log(), log);
@@ -109,7 +109,7 @@ fn session_options(log: &Recipe) -> SessionOptions {
 #[test]
 fn tools_of_one_name_are_told_apart() {
     let mut session = ball();
-    let other = SessionTool::new("brush", rod().description().clone(), &Meshes::new(), &Silent).unwrap();
+    let other = SessionTool::new("brush", rod().description().clone(), &Meshes::new(), &NoProgress).unwrap();
     make(&mut session, &brush(), &UNREFINED, &arc(0.0, 3));
     make(&mut session, &Arc::new(other), &UNREFINED, &arc(0.0, 3));
     make(&mut session, &brush(), &UNREFINED, &arc(0.0, 3));
@@ -122,7 +122,7 @@ fn tools_of_one_name_are_told_apart() {
 fn a_session_replays_moves_alone() {
     let text = "recipe = 1\n[target]\nmesh = 'm'\n[[stroke]]\nkind = 'twist'\norigin = [0,0,0]\naxis = [0,0,1]\ndegrees_per_unit = 3\n";
     let recipe = Recipe::parse(text, Format::Toml, &[]).unwrap();
-    let error = ball().replay(&recipe, &Meshes::new(), &UNREFINED, &Silent).unwrap_err();
+    let error = ball().replay(&recipe, &Meshes::new(), &UNREFINED, &NoProgress).unwrap_err();
     assert!(matches!(error, SessionReplayError::Kind { index: 0, kind: "twist" }), "{error}");
 }
 

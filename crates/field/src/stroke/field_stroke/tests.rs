@@ -35,8 +35,8 @@ fn world_and_tool_coordinates_converge_to_the_same_flow() {
     let difference = |step: f64| {
         let (motion, fields) = rod(step);
         let (mut a, mut b) = (points.clone(), points.clone());
-        motion.advance(&mut a);
-        fields.advance(&mut b);
+        motion.advect_chunk(&mut a);
+        fields.advect_chunk(&mut b);
         assert!(largest_distance(&a, &points) > 0.3);
         largest_distance(&a, &b)
     };
@@ -50,8 +50,8 @@ fn the_core_moves_rigidly() {
     let (motion, fields) = rod(0.125);
     let mut points = [DVec3::new(-0.85, 0.15, 0.4)];
     let mut expected = points;
-    fields.advance(&mut points);
-    motion.advance(&mut expected);
+    fields.advect_chunk(&mut points);
+    motion.advect_chunk(&mut expected);
     // Both carry a core point by closed forms, so only the roundings of some dozens of steps differ.
     assert!(points[0].distance(expected[0]) < 1e-14, "{points:?} {expected:?}");
 }
@@ -63,8 +63,8 @@ fn sleeping_changes_no_bit() {
     restless.legs.iter_mut().for_each(|leg| leg.approach_speed = f64::INFINITY);
     let points = scattered_points(500, 1.2);
     let (mut a, mut b) = (points.clone(), points.clone());
-    let evaluations = fields.advance(&mut a);
-    let all = restless.advance(&mut b);
+    let evaluations = fields.advect_chunk(&mut a);
+    let all = restless.advect_chunk(&mut b);
     assert_eq!(a, b);
     assert!(evaluations < all / 2, "{evaluations} of {all}");
     let unmoved = a.iter().zip(&points).filter(|(a, b)| a == b).count();
@@ -76,7 +76,7 @@ fn what_may_not_be_touched_is_not_moved() {
     let (_, fields) = rod(0.1);
     let points = scattered_points(500, 1.2);
     let mut moved = points.clone();
-    fields.advance(&mut moved);
+    fields.advect_chunk(&mut moved);
     let mut untouchable = 0;
     for (point, moved) in points.iter().zip(moved) {
         if !fields.may_touch(*point, 0.0) {
@@ -93,8 +93,8 @@ fn a_part_of_the_way_is_the_way_so_far() {
     let points = scattered_points(100, 1.0);
     for fraction in [0.0, 0.3, 0.5, 0.8] {
         let (mut a, mut b) = (points.clone(), points.clone());
-        motion.truncated(fraction).advance(&mut a);
-        fields.truncated(fraction).advance(&mut b);
+        motion.truncated(fraction).advect_chunk(&mut a);
+        fields.truncated(fraction).advect_chunk(&mut b);
         // Both are off the exact flow by less than 1e-6 at this step.
         assert!(largest_distance(&a, &b) < 1e-6, "{fraction}");
     }
@@ -141,7 +141,7 @@ impl MovingField for Pulse {
         DVec3::new(3.0, 0.6, 0.0).length() + 2.4
     }
 
-    fn carrying_speed(&self) -> f64 {
+    fn core_speed(&self) -> f64 {
         1.0
     }
 
@@ -179,8 +179,8 @@ fn sleeping_is_sound_where_the_support_changes_with_time() {
     restless.legs.iter_mut().for_each(|leg| leg.approach_speed = f64::INFINITY);
     let points = scattered_points(2000, 1.3);
     let (mut slept, mut awake) = (points.clone(), points.clone());
-    let evaluations = fields.advance(&mut slept);
-    let all = restless.advance(&mut awake);
+    let evaluations = fields.advect_chunk(&mut slept);
+    let all = restless.advect_chunk(&mut awake);
     assert_eq!(slept, awake);
     assert!(evaluations < all, "{evaluations} of {all}");
     let untouchable = points.iter().zip(&slept).filter(|(point, _)| !fields.may_touch(**point, 0.0));
@@ -191,6 +191,6 @@ fn sleeping_is_sound_where_the_support_changes_with_time() {
     let mut careless = fields.clone();
     careless.legs.iter_mut().for_each(|leg| leg.approach_speed *= 0.1);
     let mut missed = points.clone();
-    careless.advance(&mut missed);
+    careless.advect_chunk(&mut missed);
     assert_ne!(missed, awake);
 }

@@ -1,5 +1,5 @@
 use isochore_mesh::{
-    Capsule, Distance, DistanceField, DistanceFieldOptions, Padding, RoundedBox, Silent, Sphere, primitives,
+    Capsule, Distance, DistanceField, DistanceFieldOptions, NoProgress, Padding, RoundedBox, Sphere, primitives,
 };
 
 use super::*;
@@ -15,7 +15,7 @@ fn sphere(profile: Profile) -> Arc<Tool> {
 
 fn carried(stroke: &Move, point: DVec3) -> DVec3 {
     let mut points = [point];
-    stroke.advance(&mut points);
+    stroke.advect_chunk(&mut points);
     points[0]
 }
 
@@ -181,7 +181,7 @@ fn sleeping_changes_no_bit() {
     sleeping_changes_no_bit_around(tool(RoundedBox::new(half_extents, 0.05).unwrap(), 0.2, Profile::Quintic));
     let mesh = primitives::box_mesh(half_extents, [1, 1, 1]);
     let options = DistanceFieldOptions { resolution: 32, padding: Padding::Reach(0.2), ..Default::default() };
-    let sampled = DistanceField::new(&mesh, &options, &Silent).unwrap();
+    let sampled = DistanceField::new(&mesh, &options, &NoProgress).unwrap();
     sleeping_changes_no_bit_around(tool(sampled, 0.2, Profile::Quintic));
 }
 
@@ -199,7 +199,7 @@ fn sleeping_changes_no_bit_around(bar: Arc<Tool>) {
         })
         .collect();
     let mut sleeping = points.clone();
-    let evaluations = stroke.advance(&mut sleeping);
+    let evaluations = stroke.advect_chunk(&mut sleeping);
 
     let mut wakeful = points.clone();
     for segment in &stroke.segments {
@@ -287,8 +287,11 @@ fn nothing_moves_beyond_the_reach_and_carrying_has_the_bits_of_the_flow() {
         (0..24_usize.pow(3)).map(|i| DVec3::new((i % 24) as f64, (i / 24 % 24) as f64, (i / 576) as f64) * 0.11 - 0.9);
     let rest: Vec<DVec3> = grid.collect();
     let mut carried = rest.clone();
-    stroke.carry(&mut carried);
-    assert_eq!(crate::flow_points(&rest, std::slice::from_ref(&stroke), &isochore_mesh::Silent).unwrap(), carried);
+    stroke.advect(&mut carried);
+    assert_eq!(
+        crate::advect_points(&rest, std::slice::from_ref(&stroke), &isochore_mesh::NoProgress).unwrap(),
+        carried
+    );
     let (mut inside, mut outside) = (0, 0);
     for (rest, carried) in rest.iter().zip(&carried) {
         if rest != carried {
@@ -302,6 +305,6 @@ fn nothing_moves_beyond_the_reach_and_carrying_has_the_bits_of_the_flow() {
     let mask = crate::Mask::new(vec![crate::Pin::new(DVec3::X, 0.1, 0.1).unwrap()], None, vec![]).unwrap();
     let masked = stroke.masked(&Arc::new(mask), Aabb::of(rest.iter().copied()), 0.25).unwrap();
     let mut carried = rest.clone();
-    masked.carry(&mut carried);
+    masked.advect(&mut carried);
     assert!(rest.iter().zip(&carried).all(|(rest, carried)| rest == carried || masked.reach().distance(*rest) == 0.0));
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::*;
 use crate::{
-    LANES, Silent,
+    LANES, NoProgress,
     distance_field::{Grid, interpolant::columns::Plain, spline},
 };
 
@@ -23,7 +23,7 @@ fn interpolant() -> Interpolant {
             (40.0 + from.abs().max_element() + 0.001 * libm::sin(7.0 * index as f64)) as f32
         })
         .collect();
-    Interpolant::new(&grid, &samples, &Silent).unwrap()
+    Interpolant::new(&grid, &samples, &NoProgress).unwrap()
 }
 
 /// Points inside and beyond, on nodes and on the border of what can be sampled, and what is not finite.

@@ -2,11 +2,11 @@ use glam::dvec3;
 
 use super::*;
 use crate::primitives::{box_mesh, icosphere};
-use crate::{DistanceField, DistanceFieldOptions, Padding, Silent};
+use crate::{DistanceField, DistanceFieldOptions, NoProgress, Padding};
 
 fn field(mesh: &TriMesh, resolution: usize) -> DistanceField {
     let options = DistanceFieldOptions { resolution, padding: Padding::Cells(2), ..Default::default() };
-    DistanceField::new(mesh, &options, &Silent).unwrap()
+    DistanceField::new(mesh, &options, &NoProgress).unwrap()
 }
 
 /// Compares all signs, but those of nodes on the surface, with winding numbers of single points; says how many were compared.

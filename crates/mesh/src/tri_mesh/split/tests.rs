@@ -1,5 +1,5 @@
 use super::*;
-use crate::{ClosedMesh, Silent, primitives};
+use crate::{ClosedMesh, NoProgress, primitives};
 
 /// Sizes of the terms of a sum of this many rounded numbers, relative to the sum: far more than it takes.
 const ROUNDING: f64 = 1e-12;
@@ -16,7 +16,7 @@ fn uneven() -> TriMesh {
 fn no_edge_is_longer_and_nothing_moves() {
     let mesh = uneven();
     for longest in [2.0, 0.3, 0.1, 0.02] {
-        let split = mesh.split_to_length(longest, 10_000_000, &Silent).unwrap();
+        let split = mesh.split_to_length(longest, 10_000_000, &NoProgress).unwrap();
         let fine = mesh.subdivided(&split);
         assert!(ClosedMesh::new(&fine).is_ok(), "{longest}");
         let edges = (0..fine.triangles.len()).flat_map(|triangle| {
@@ -39,7 +39,7 @@ fn no_edge_is_longer_and_nothing_moves() {
 #[test]
 fn short_edges_keep_their_triangles() {
     let mesh = uneven();
-    let split = mesh.split_to_length(10.0, 1000, &Silent).unwrap();
+    let split = mesh.split_to_length(10.0, 1000, &NoProgress).unwrap();
     assert_eq!(split.positions, mesh.positions);
     assert_eq!(split.triangles.iter().map(|part| part.vertices).collect::<Vec<_>>(), mesh.triangles);
 }
@@ -48,7 +48,7 @@ fn short_edges_keep_their_triangles() {
 fn one_long_edge_splits_both_triangles_at_it() {
     let positions = vec![DVec3::ZERO, 4.0 * DVec3::X, 2.0 * DVec3::X + DVec3::Y, 2.0 * DVec3::X - DVec3::Y];
     let mesh = TriMesh::new(positions, vec![[0, 1, 2], [1, 0, 3]]);
-    let split = mesh.split_to_length(3.0, 10, &Silent).unwrap();
+    let split = mesh.split_to_length(3.0, 10, &NoProgress).unwrap();
     assert_eq!(split.positions[4..], [2.0 * DVec3::X]);
     let vertices: Vec<_> = split.triangles.iter().map(|part| part.vertices).collect();
     assert_eq!(vertices, [[0, 4, 2], [4, 1, 2], [1, 4, 3], [4, 0, 3]]);
@@ -59,7 +59,7 @@ fn same_bits_for_any_number_of_threads() {
     let mesh = primitives::icosphere(1.0, 5);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| mesh.split_to_length(0.02, 1_000_000, &Silent).unwrap())
+        pool.install(|| mesh.split_to_length(0.02, 1_000_000, &NoProgress).unwrap())
     };
     let one = with(1);
     assert!(one.triangles.len() > mesh.triangles.len());
@@ -71,12 +71,12 @@ fn same_bits_for_any_number_of_threads() {
 fn what_cannot_be_done_is_an_error() {
     let mesh = uneven();
     for length in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(mesh.split_to_length(length, 1000, &Silent), Err(SplitError::Length(_))));
+        assert!(matches!(mesh.split_to_length(length, 1000, &NoProgress), Err(SplitError::Length(_))));
     }
     for length in [0.1, 1e-6, 1e-300] {
-        let error = mesh.split_to_length(length, 1000, &Silent).unwrap_err();
+        let error = mesh.split_to_length(length, 1000, &NoProgress).unwrap_err();
         assert_eq!(error, SplitError::TooManyTriangles { length, limit: 1000 });
     }
     let broken = TriMesh::new(mesh.positions.clone(), vec![[0, 1, 9999]]);
-    assert!(matches!(broken.split_to_length(1.0, 1000, &Silent), Err(SplitError::Mesh(_))));
+    assert!(matches!(broken.split_to_length(1.0, 1000, &NoProgress), Err(SplitError::Mesh(_))));
 }

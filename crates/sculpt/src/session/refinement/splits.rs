@@ -46,7 +46,7 @@ impl Pass<'_> {
             };
             let bases: Vec<_> = long.iter().map(base).collect();
             let mut images = bases.clone();
-            self.done.evaluations += self.stroke.carry(&mut images);
+            self.done.evaluations += self.stroke.advect(&mut images);
 
             let known = self.edited.len();
             for ((&(_, ends), base), image) in long.iter().zip(bases).zip(images) {

@@ -19,7 +19,7 @@ struct Carried {
 
 impl Session {
     /// Carries what the tool touches along one segment, and refines there.
-    pub(super) fn carry(&mut self, segment: Segment, done: &mut MoveReceipt) -> Result<(), SessionError> {
+    pub(super) fn advect(&mut self, segment: Segment, done: &mut MoveReceipt) -> Result<(), SessionError> {
         let Some(stroke) = &mut self.stroke else { return Err(SessionError::NoStroke) };
         let surface = &mut self.surface;
         let mut last = Instant::now();
@@ -87,7 +87,7 @@ impl Surface {
         let bits = |point: DVec3| point.to_array().map(f64::to_bits);
         let carry = |chunk: &[u32]| {
             let mut points: Vec<DVec3> = chunk.iter().map(|&vertex| self.position(vertex)).collect();
-            let evaluations = segment.stroke.carry(&mut points);
+            let evaluations = segment.stroke.advect(&mut points);
             let carried = chunk.iter().copied().zip(points);
             let moved = carried.filter(|&(vertex, point)| bits(self.position(vertex)) != bits(point));
             Carried { moved: moved.collect(), evaluations }

@@ -12,10 +12,10 @@ use crate::frame::{FrameError, orthogonal_reference};
 use crate::{Frame, Spine};
 
 /// Curves carried at once.
-pub const CURVES_ABREAST: usize = 16;
+pub const BATCH_SIZE: usize = 16;
 
 /// One number for each curve.
-type Lanes = [f32; CURVES_ABREAST];
+type Lanes = [f32; BATCH_SIZE];
 
 /// A vector for each curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,10 +27,10 @@ struct VectorLanes {
 }
 
 impl VectorLanes {
-    const ZERO: Self = Self { x: [0.0; CURVES_ABREAST], y: [0.0; CURVES_ABREAST], z: [0.0; CURVES_ABREAST] };
+    const ZERO: Self = Self { x: [0.0; BATCH_SIZE], y: [0.0; BATCH_SIZE], z: [0.0; BATCH_SIZE] };
 
     fn gather(vector: impl Fn(usize) -> DVec3) -> Self {
-        let vectors: [DVec3; CURVES_ABREAST] = std::array::from_fn(vector);
+        let vectors: [DVec3; BATCH_SIZE] = std::array::from_fn(vector);
         Self { x: vectors.map(|v| v.x as f32), y: vectors.map(|v| v.y as f32), z: vectors.map(|v| v.z as f32) }
     }
 
@@ -41,7 +41,7 @@ impl VectorLanes {
 
 /// Up to sixteen spines with equally many segments, laid out so that they are carried abreast.
 #[derive(Debug, Clone)]
-pub struct SpinesAbreast {
+pub struct SpineBatch {
     count: usize,
     /// Chords by segment, each scaled to unit length.
     chords: Vec<VectorLanes>,
@@ -53,7 +53,7 @@ pub struct SpinesAbreast {
 
 /// Reference vectors of spines carried abreast.
 #[derive(Debug, Clone)]
-pub struct ReferencesAbreast {
+pub struct ReferenceBatch {
     vectors: Vec<VectorLanes>,
     /// For each curve the smallest squared second reflection.
     smallest: Lanes,
@@ -61,7 +61,7 @@ pub struct ReferencesAbreast {
 
 /// Why spines cannot be carried abreast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum AbreastError {
+pub enum BatchError {
     /// There are none, or more than sixteen.
     #[error("{count} spines, where 1 to 16 are carried abreast")]
     Count {
@@ -88,22 +88,22 @@ pub enum AbreastError {
     },
 }
 
-impl SpinesAbreast {
+impl SpineBatch {
     /// Lays out `spines`.
     ///
     /// # Errors
     /// A wrong number of spines, unequal numbers of segments, and repeated points.
-    pub fn new(spines: &[Spine]) -> Result<Self, AbreastError> {
-        if spines.is_empty() || spines.len() > CURVES_ABREAST {
-            return Err(AbreastError::Count { count: spines.len() });
+    pub fn new(spines: &[Spine]) -> Result<Self, BatchError> {
+        if spines.is_empty() || spines.len() > BATCH_SIZE {
+            return Err(BatchError::Count { count: spines.len() });
         }
         let expected = spines[0].segments();
         for (index, spine) in spines.iter().enumerate() {
             if spine.segments() != expected {
-                return Err(AbreastError::Segments { index, segments: spine.segments(), expected });
+                return Err(BatchError::Segments { index, segments: spine.segments(), expected });
             }
             if let Some(segment) = (0..expected).find(|&i| spine.point(i + 1) == spine.point(i)) {
-                return Err(AbreastError::RepeatedPoint { index, segment });
+                return Err(BatchError::RepeatedPoint { index, segment });
             }
         }
         // Lanes without a curve repeat the last one.
@@ -118,8 +118,8 @@ impl SpinesAbreast {
     }
 
     /// Room for the results of [`carry`](Self::carry).
-    pub fn references(&self) -> ReferencesAbreast {
-        ReferencesAbreast { vectors: vec![VectorLanes::ZERO; self.tangents.len()], smallest: [4.0; CURVES_ABREAST] }
+    pub fn references(&self) -> ReferenceBatch {
+        ReferenceBatch { vectors: vec![VectorLanes::ZERO; self.tangents.len()], smallest: [4.0; BATCH_SIZE] }
     }
 
     /// Carries the part of each of `starts` normal to the first tangent of its curve along all curves, into
@@ -130,7 +130,7 @@ impl SpinesAbreast {
     ///
     /// # Panics
     /// If there is not one start a curve, or if `references` was made for other spines.
-    pub fn carry(&self, starts: &[DVec3], references: &mut ReferencesAbreast) -> Result<(), FrameError> {
+    pub fn propagate(&self, starts: &[DVec3], references: &mut ReferenceBatch) -> Result<(), FrameError> {
         assert_eq!(starts.len(), self.count, "one start a curve");
         assert_eq!(references.vectors.len(), self.tangents.len(), "references of these spines");
         let starts = starts
@@ -151,7 +151,7 @@ impl SpinesAbreast {
     ///
     /// # Panics
     /// If there is no such curve.
-    pub fn frames(&self, curve: usize, references: &ReferencesAbreast) -> Result<Vec<Frame>, FrameError> {
+    pub fn frames(&self, curve: usize, references: &ReferenceBatch) -> Result<Vec<Frame>, FrameError> {
         assert!(curve < self.count, "curve {curve} of {}", self.count);
         let spine = &self.spines[curve];
         if references.smallest[curve] < SMALLEST_SECOND_REFLECTION as f32 {
@@ -180,12 +180,12 @@ impl SpinesAbreast {
 /// which fuses multiplications and additions, so that all give the same bits.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
 fn carry_lanes(chords: &[VectorLanes], tangents: &[VectorLanes], references: &mut [VectorLanes]) -> Lanes {
-    let mut smallest = [4.0; CURVES_ABREAST];
+    let mut smallest = [4.0; BATCH_SIZE];
     let mut r = references[0];
     let mut start = &tangents[0];
     let steps = chords.iter().zip(&tangents[1..]).zip(&mut references[1..]);
     for ((chord, end), out) in steps {
-        for lane in 0..CURVES_ABREAST {
+        for lane in 0..BATCH_SIZE {
             let (cx, cy, cz) = (chord.x[lane], chord.y[lane], chord.z[lane]);
             let (sx, sy, sz) = (start.x[lane], start.y[lane], start.z[lane]);
             let along = 2.0 * (cx * sx + cy * sy + cz * sz);
@@ -226,9 +226,9 @@ mod tests {
         for count in [1, 5, 16] {
             let spines = spines(count, 1000);
             let starts = vec![DVec3::Z; count];
-            let abreast = SpinesAbreast::new(&spines).unwrap();
+            let abreast = SpineBatch::new(&spines).unwrap();
             let mut references = abreast.references();
-            abreast.carry(&starts, &mut references).unwrap();
+            abreast.propagate(&starts, &mut references).unwrap();
             for (curve, spine) in spines.iter().enumerate() {
                 let exact = rotation_minimizing_frames(
                     spine,
@@ -253,23 +253,20 @@ mod tests {
         let mut tangents = spines[1].tangents().to_vec();
         tangents[7] = -tangents[7];
         spines[1] = Spine::new(spines[1].points().to_vec(), tangents, false).unwrap();
-        let abreast = SpinesAbreast::new(&spines).unwrap();
+        let abreast = SpineBatch::new(&spines).unwrap();
         let mut references = abreast.references();
-        abreast.carry(&[DVec3::Z; 3], &mut references).unwrap();
+        abreast.propagate(&[DVec3::Z; 3], &mut references).unwrap();
         assert!(abreast.frames(0, &references).is_ok() && abreast.frames(2, &references).is_ok());
         assert_eq!(abreast.frames(1, &references), Err(FrameError::DegenerateSegment { segment: 6 }));
     }
 
     #[test]
     fn unequal_spines_are_refused() {
-        assert_eq!(SpinesAbreast::new(&[]).unwrap_err(), AbreastError::Count { count: 0 });
-        assert_eq!(SpinesAbreast::new(&spines(17, 3)).unwrap_err(), AbreastError::Count { count: 17 });
+        assert_eq!(SpineBatch::new(&[]).unwrap_err(), BatchError::Count { count: 0 });
+        assert_eq!(SpineBatch::new(&spines(17, 3)).unwrap_err(), BatchError::Count { count: 17 });
         let unequal = [spines(1, 3), spines(1, 4)].concat();
-        assert_eq!(
-            SpinesAbreast::new(&unequal).unwrap_err(),
-            AbreastError::Segments { index: 1, segments: 4, expected: 3 }
-        );
+        assert_eq!(SpineBatch::new(&unequal).unwrap_err(), BatchError::Segments { index: 1, segments: 4, expected: 3 });
         let still = Spine::new(vec![DVec3::X; 2], vec![DVec3::X; 2], false).unwrap();
-        assert_eq!(SpinesAbreast::new(&[still]).unwrap_err(), AbreastError::RepeatedPoint { index: 0, segment: 0 });
+        assert_eq!(SpineBatch::new(&[still]).unwrap_err(), BatchError::RepeatedPoint { index: 0, segment: 0 });
     }
 }
