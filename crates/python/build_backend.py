@@ -30,7 +30,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 def _stage_command():
     """Compiles the command and lays it where maturin takes scripts from."""
-    subprocess.run(["cargo", "build", "--release", "--locked", "--package", "isochore"], cwd=ROOT, check=True)
+    subprocess.run(["cargo", "build", "--release", "--locked", "--package", "isochore-cli"], cwd=ROOT, check=True)
     metadata = subprocess.run(
         ["cargo", "metadata", "--no-deps", "--format-version", "1"], cwd=ROOT, check=True, capture_output=True
     )

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    isochore::main(std::env::args_os())
+    isochore_cli::main(std::env::args_os())
 }

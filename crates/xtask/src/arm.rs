@@ -17,8 +17,8 @@ const RECIPES: [&str; 2] = ["sphere", "knight"];
 pub(crate) fn compare_bytes() -> TaskResult {
     debian::require(LINKER, &["gcc-aarch64-linux-gnu", "libc6-dev-arm64-cross"])?;
     debian::require("qemu-aarch64", &["qemu-user"])?;
-    let command =
-        cross::build("isochore", TRIPLE, ("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER", LINKER))?.join("isochore");
+    let environment = ("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER", LINKER);
+    let command = cross::build("isochore-cli", TRIPLE, environment)?.join("isochore");
     let folder = target().join("arm");
     fs::create_dir_all(&folder)?;
     for name in RECIPES {

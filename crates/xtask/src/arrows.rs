@@ -14,7 +14,7 @@ const ALLOWED: [(&str, &[&str]); 9] = [
     ("isochore-wasm", &["isochore-mesh", "isochore-field", "isochore-sculpt"]),
     ("isochore-capi", &["isochore-mesh", "isochore-field", "isochore-sculpt"]),
     ("isochore-python", &["isochore-mesh", "isochore-field", "isochore-sculpt"]),
-    ("isochore", &["isochore-mesh", "isochore-curve", "isochore-field", "isochore-sculpt", "isochore-picture"]),
+    ("isochore-cli", &["isochore-mesh", "isochore-curve", "isochore-field", "isochore-sculpt", "isochore-picture"]),
 ];
 
 #[test]

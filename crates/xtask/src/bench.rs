@@ -13,7 +13,7 @@ const MARKERS: [&str; 2] = ["<!-- speed: written by cargo xtask bench -->\n", "<
 ///
 /// Rows of earlier days are left out: programs, peers and machine may have changed since.
 pub(crate) fn measure_all() -> TaskResult {
-    run(&mut cargo(&["build", "--release", "--locked", "--package", "isochore-bench", "--package", "isochore"]))?;
+    run(&mut cargo(&["build", "--release", "--locked", "--package", "isochore-bench", "--package", "isochore-cli"]))?;
     let today = output(Command::new("date").args(["-u", "+%F"]))?;
     let folder = target().join("bench-rows").join(&today);
     fs::create_dir_all(&folder)?;

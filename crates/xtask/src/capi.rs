@@ -89,7 +89,7 @@ fn pressed_by_command(folder: &Path) -> TaskResult<Vec<u8>> {
     let lines = source.lines().filter_map(|line| line.trim().strip_prefix('"')?.split("\\n\"").next());
     let (recipe, mesh) = (folder.join("press.toml"), folder.join("expected.obj"));
     fs::write(&recipe, lines.collect::<Vec<_>>().join("\n"))?;
-    let mut command = cargo(&["run", "--release", "--locked", "--quiet", "--package", "isochore", "--", "run"]);
+    let mut command = cargo(&["run", "--release", "--locked", "--quiet", "--package", "isochore-cli", "--", "run"]);
     run(command.arg(&recipe).args(["--quiet", "--output"]).arg(&mesh))?;
     Ok(fs::read(mesh)?)
 }

@@ -133,7 +133,8 @@ const FRAMES: [(&str, &str); 11] = [
 pub(crate) fn draw_all() -> TaskResult {
     let folder = workspace().join("gallery");
     fs::create_dir_all(&folder)?;
-    run(&mut cargo(&["build", "--release", "--locked", "--package", "isochore", "--package", "isochore-examples"]))?;
+    let packages = ["--package", "isochore-cli", "--package", "isochore-examples"];
+    run(cargo(&["build", "--release", "--locked"]).args(packages))?;
     for program in programs()? {
         run(std::process::Command::new(target().join("release").join(program)).arg(&folder))?;
     }

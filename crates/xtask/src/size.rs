@@ -7,7 +7,7 @@ const MOST_BYTES: u64 = 15_000_000;
 
 /// Builds the command for release and fails where it is too large.
 pub(crate) fn check() -> TaskResult {
-    run(&mut cargo(&["build", "--release", "--locked", "--quiet", "--package", "isochore"]))?;
+    run(&mut cargo(&["build", "--release", "--locked", "--quiet", "--package", "isochore-cli"]))?;
     let size = target().join("release").join(format!("isochore{}", std::env::consts::EXE_SUFFIX)).metadata()?.len();
     if size > MOST_BYTES {
         return Err(format!("the command has {size} bytes, more than {MOST_BYTES}").into());
