@@ -2,7 +2,17 @@
 
 use glam::DVec3;
 
-/// An axis-aligned bounding box; empty where `min > max` on any axis.
+/// An axis-aligned bounding box. It is empty if `min > max` on any axis.
+///
+/// ```
+/// use glam::{DVec3, dvec3};
+/// use isochore_mesh::Aabb;
+///
+/// let aabb = Aabb::of([DVec3::ZERO, dvec3(2.0, 1.0, 1.0)]);
+/// assert_eq!(aabb.center(), dvec3(1.0, 0.5, 0.5));
+/// assert_eq!(aabb.distance(dvec3(5.0, 0.5, 0.5)), 3.0);
+/// assert!(aabb.overlaps(aabb.translated(DVec3::X)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aabb {
     /// Smallest coordinates.
@@ -12,25 +22,25 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The box that holds nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
-    /// The smallest box that holds all `points`; [`EMPTY`](Self::EMPTY) for none.
+    /// The smallest box that contains all `points`; [`EMPTY`](Self::EMPTY) for an empty iterator.
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |aabb, point| aabb.including(point))
     }
 
-    /// The smallest box that holds this one and `point`.
+    /// The smallest box that contains this one and `point`.
     pub fn including(self, point: DVec3) -> Self {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// The smallest box that holds both.
+    /// The smallest box that contains both.
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// Whether the two have a point in common.
+    /// Whether the two boxes have a point in common.
     pub fn overlaps(self, other: Self) -> bool {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
@@ -55,12 +65,12 @@ impl Aabb {
         0.5 * (self.min + self.max)
     }
 
-    /// Whether the two have a point in common.
+    /// Whether the two boxes have a point in common.
     pub fn touches(self, other: Self) -> bool {
         self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
     }
 
-    /// Distance from `point` to the box, zero inside.
+    /// Distance from `point` to the box, model units; zero inside.
     pub fn distance(self, point: DVec3) -> f64 {
         (self.min - point).max(point - self.max).max(DVec3::ZERO).length()
     }

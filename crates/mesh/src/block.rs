@@ -1,11 +1,20 @@
-//! Blocks of points: structures of arrays for kernels that the compiler turns into vector code.
+//! Blocks of points: structures of arrays for kernels that the compiler vectorizes.
 
 use glam::DVec3;
 
-/// Points in a block. One point is a block of one; the other lanes are copies that nobody reads.
+/// Number of points in a block. A single point is sampled as a block of copies.
 pub const LANES: usize = 16;
 
 /// Coordinates of [`LANES`] points.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_mesh::PointBlock;
+///
+/// let block = PointBlock::gather(&[DVec3::X, DVec3::Y]);
+/// assert_eq!(block.get(0), DVec3::X);
+/// assert_eq!(block.get(15), DVec3::Y);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 pub struct PointBlock {
@@ -26,7 +35,7 @@ impl PointBlock {
         Self { x: [point.x; LANES], y: [point.y; LANES], z: [point.z; LANES] }
     }
 
-    /// Up to [`LANES`] points; the last one fills the lanes that remain.
+    /// Collects up to [`LANES`] points; copies of the last point fill the remaining lanes.
     ///
     /// # Panics
     /// If `points` is empty or longer than [`LANES`].
@@ -39,12 +48,12 @@ impl PointBlock {
         block
     }
 
-    /// The point in `lane`.
+    /// Returns the point in `lane`.
     pub fn get(&self, lane: usize) -> DVec3 {
         DVec3::new(self.x[lane], self.y[lane], self.z[lane])
     }
 
-    /// Puts `point` into `lane`.
+    /// Sets the point in `lane`.
     pub fn set(&mut self, lane: usize, point: DVec3) {
         self.x[lane] = point.x;
         self.y[lane] = point.y;
@@ -56,13 +65,15 @@ impl PointBlock {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 pub struct DistanceBlock {
-    /// Signed distances, negative inside; infinite where the sampled field does not reach.
+    /// Signed distances, negative inside, model units; infinite beyond the reach of a sampled
+    /// field.
     pub value: [f64; LANES],
-    /// Gradients of the very function that gave `value`; zero where that is infinite or has no gradient.
+    /// Gradients of the function that is evaluated; zero wherever `value` is infinite or has no
+    /// gradient.
     pub gradient: PointBlock,
 }
 
 impl DistanceBlock {
-    /// Infinitely far from everything.
+    /// Infinite distances with zero gradients.
     pub const FAR: Self = Self { value: [f64::INFINITY; LANES], gradient: PointBlock::ZERO };
 }

@@ -1,4 +1,4 @@
-//! A bounding volume hierarchy over triangles, and the closest point on them.
+//! Bounding volume hierarchy over triangles, and closest-point queries.
 
 mod build;
 mod closest_point;
@@ -16,28 +16,31 @@ pub use closest_point::{ClosestPoint, Feature};
 pub(crate) use closest_point::{OnTriangle, SquaredDistance, closest_on_triangle};
 pub(crate) use unit_frame::UnitFrame;
 
-/// Triangles in a leaf at most: one test of the box for all of them. Larger: more triangles are tried. Smaller: more boxes are, and
-/// have to be made.
+/// Maximum number of triangles in a leaf, which are tested together. Larger: more triangles are
+/// tested. Smaller: more boxes are built and tested.
 pub(crate) const LEAF_TRIANGLES: u32 = 6;
 
-/// Relative slack of pruning. Boxes are rounded outward, so the box distance in exact arithmetic is never too large; computed in
-/// `f64` from coordinates of size at most a few, it is off by less than ten rounding errors, as is the best squared distance it
-/// is compared with. Larger: needless visits. Smaller than 20 · 2⁻⁵³ = 2.3e-15: a nearest triangle could be missed.
+/// Relative slack of pruning. Boxes are rounded outward, so in exact arithmetic the distance to a
+/// box is never too large. Computed in `f64` from coordinates of about unit size, it is off by less
+/// than ten rounding errors, and so is the best squared distance that it is compared with. Larger:
+/// needless visits. Smaller than 20 · 2⁻⁵³ = 2.3e-15: a nearest triangle could be missed.
 const PRUNING_SLACK: f64 = 1.0 + 1e-14;
 
-/// Triangles that one task looks at.
+/// Triangles per parallel task when checking the input.
 const TRIANGLES_AT_ONCE: usize = 1 << 14;
 
-/// How many triangles at once are taken for one when the hierarchy is built.
+/// Granularity of the clustering that builds the hierarchy: triangles per group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Clustering {
-    /// Every triangle on its own: for many searches, which then look at less.
+    /// Each triangle is a group. Best for many searches, which visit fewer nodes.
     Fine = 1,
-    /// As many as a leaf may hold: for few searches, since clustering takes a fraction of the time.
+    /// Groups as large as a leaf. Best for few searches, because clustering is several times
+    /// faster.
     Coarse = LEAF_TRIANGLES as isize,
 }
 
-/// A node: an inner one has its children at `first` and `first + 1`, a leaf has its triangles from `first` on.
+/// A node of the hierarchy. An inner node has the children `first` and `first + 1`. A leaf has the
+/// `count` triangles from slot `first` on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node {
     /// Smallest coordinates in the unit frame, rounded down.
@@ -45,27 +48,28 @@ pub(crate) struct Node {
     /// Largest coordinates in the unit frame, rounded up.
     pub(crate) max: [f32; 3],
     pub(crate) first: u32,
-    /// Triangles below it; at most [`LEAF_TRIANGLES`] in a leaf, and more in inner nodes.
+    /// Number of triangles below the node. At most [`LEAF_TRIANGLES`] in a leaf, more in an inner
+    /// node.
     pub(crate) count: u32,
 }
 
-/// Why triangles cannot be searched.
+/// Errors when building a hierarchy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum BvhError {
-    /// There is nothing to search.
+    /// The mesh has no triangles.
     #[error("the mesh has no triangles")]
     Empty,
-    /// A vertex index points behind the last position.
-    #[error("triangle {triangle} uses vertex {vertex}, but there are only {vertices}")]
+    /// A vertex index is not smaller than the number of vertices.
+    #[error("triangle {triangle} uses vertex {vertex}, but the mesh has only {vertices} vertices")]
     IndexOutOfRange {
         /// Index of the offending triangle.
         triangle: usize,
-        /// The vertex index it holds.
+        /// The invalid vertex index.
         vertex: u32,
         /// Number of vertices.
         vertices: usize,
     },
-    /// A coordinate in use is infinite or not a number.
+    /// A vertex of a triangle has an infinite or NaN coordinate.
     #[error("vertex {vertex} has a coordinate that is not finite")]
     NotFinite {
         /// Index of the offending vertex.
@@ -73,15 +77,27 @@ pub enum BvhError {
     },
 }
 
-/// A bounding volume hierarchy over the triangles of a mesh, built once and searched from any number of threads.
+/// A bounding volume hierarchy over the triangles of a mesh. It is immutable and can be searched
+/// from any number of threads.
+///
+/// ```
+/// use glam::{DVec3, dvec3};
+/// use isochore_mesh::{Bvh, Feature};
+///
+/// let bvh = Bvh::new(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+/// let closest = bvh.closest_point(dvec3(0.25, 0.25, 2.0));
+/// assert_eq!(closest.distance, 2.0);
+/// assert_eq!(closest.feature, Feature::Face);
+/// # Ok::<(), isochore_mesh::BvhError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Bvh {
     bounds: Aabb,
     frame: UnitFrame,
     nodes: Vec<Node>,
-    /// Longest way from the root to a leaf, in nodes.
+    /// Longest path from the root to a leaf, in nodes.
     depth: usize,
-    /// Triangle numbers of the mesh, in leaf order.
+    /// Triangle indices of the mesh, in leaf order.
     order: Vec<u32>,
     /// Vertex indices, in leaf order.
     triangles: Vec<[u32; 3]>,
@@ -90,17 +106,18 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds the hierarchy. Zero-area triangles count as the segments or points that they are.
+    /// Builds the hierarchy. Triangles without area are treated as segments or points.
     ///
     /// # Errors
-    /// See [`BvhError`].
+    /// [`BvhError::Empty`] without triangles; [`BvhError::IndexOutOfRange`] or
+    /// [`BvhError::NotFinite`] for the first triangle with an invalid vertex.
     pub fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, BvhError> {
         let bounds = checked_bounds(positions, triangles)?;
         Ok(Self::within(bounds, positions, triangles, Clustering::Fine, || ()).0)
     }
 
-    /// Builds the hierarchy of triangles that have these [`checked_bounds`]. What is to be done `meanwhile` has a thread to itself
-    /// while another one clusters, which cannot be shared.
+    /// Builds the hierarchy of triangles with these [`checked_bounds`]. Clustering uses a single
+    /// thread, so `meanwhile` runs in parallel with it.
     pub(crate) fn within<T: Send>(
         bounds: Aabb,
         positions: &[DVec3],
@@ -109,7 +126,7 @@ impl Bvh {
         meanwhile: impl FnOnce() -> T + Send,
     ) -> (Self, T) {
         let frame = UnitFrame::around(bounds);
-        let positions: Vec<DVec3> = positions.par_iter().map(|&position| frame.inward(position)).collect();
+        let positions: Vec<DVec3> = positions.par_iter().map(|&position| frame.to_unit(position)).collect();
         let mut groups = Groups::new(&positions, triangles, clustering as u32);
         let ((nodes, in_order), done) = rayon::join(|| groups.clustered(), meanwhile);
         let (depth, order) = rayon::join(|| depth(&nodes), || groups.order(&in_order));
@@ -117,27 +134,29 @@ impl Bvh {
         (Self { bounds, frame, depth, nodes, order, triangles, positions }, done)
     }
 
-    /// The point of the triangles nearest to `point`, and the feature it lies on. Of equally near ones, any, but always the same.
+    /// Returns the point of the triangles that is nearest to `point`, and the feature that contains
+    /// it. Of several equally near points, the choice is deterministic.
     pub fn closest_point(&self, point: DVec3) -> ClosestPoint {
-        let local = self.frame.inward(point);
+        let local = self.frame.to_unit(point);
         let nearest = self.nearest(local, None);
         let corners = &self.corners(nearest.slot);
         let (on_triangle, _) = closest_on_triangle(local, corners);
         ClosestPoint {
-            point: self.frame.outward(on_triangle.point),
+            point: self.frame.from_unit(on_triangle.point),
             distance: nearest.squared.sqrt() / self.frame.scale(),
             triangle: self.order[nearest.slot as usize],
             feature: on_triangle.feature,
         }
     }
 
-    /// The nearest triangle to a point of the unit frame. A good `guess` (a slot in leaf order) saves time and changes nothing
-    /// but which one of equally near triangles is found.
+    /// Returns the triangle nearest to a point of the unit frame. A good `guess` (a slot in leaf
+    /// order) saves time. It can only change the choice among equally near triangles.
     pub(crate) fn nearest(&self, point: DVec3, guess: Option<u32>) -> SquaredDistance {
         let mut best = SquaredDistance { slot: 0, squared: f64::INFINITY };
         if let Some(slot) = guess {
             best = SquaredDistance { slot, squared: closest_on_triangle(point, &self.corners(slot)).1 };
         }
+        // Depth-first search, nearer child first, so that the bound becomes tight early.
         let mut stack = Vec::with_capacity(self.depth + 1);
         stack.push((0, self.nodes[0].squared_distance(point)));
         while let Some((index, squared)) = stack.pop() {
@@ -173,18 +192,19 @@ impl Bvh {
         &self.frame
     }
 
-    /// Nodes in preorder: the root first, then always the two children of a node beside each other, then all that is below the first of
-    /// them, then all below the second. Leaves have their triangles in the same order.
+    /// Nodes in preorder. The root is first. The two children of a node are adjacent, followed by
+    /// all nodes below the first child, then by all nodes below the second. The triangles of leaves
+    /// have the same order.
     pub(crate) fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
-    /// Entries that a stack of nodes needs at most in a traversal that pushes both children.
+    /// Stack capacity for a traversal that pushes both children of a node.
     pub(crate) fn stack_capacity(&self) -> usize {
         self.depth + 1
     }
 
-    /// Number of each triangle in the mesh, in leaf order.
+    /// Index in the mesh of each triangle, in leaf order.
     pub(crate) fn order(&self) -> &[u32] {
         &self.order
     }
@@ -194,7 +214,7 @@ impl Bvh {
         &self.triangles
     }
 
-    /// Corners of a triangle in the unit frame, by its place in leaf order.
+    /// Corners of a triangle in the unit frame, given by its slot in leaf order.
     #[inline(always)]
     pub(crate) fn corners(&self, slot: u32) -> [DVec3; 3] {
         let [a, b, c] = self.triangles[slot as usize];
@@ -216,10 +236,10 @@ impl Node {
     }
 }
 
-/// The box around all triangles, of which none may name a vertex that is not there or not finite.
+/// Returns the bounding box of all triangles, after checking their vertices.
 ///
 /// # Errors
-/// See [`BvhError`].
+/// See [`Bvh::new`].
 pub(crate) fn checked_bounds(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Aabb, BvhError> {
     if triangles.is_empty() {
         return Err(BvhError::Empty);
@@ -233,18 +253,19 @@ pub(crate) fn checked_bounds(positions: &[DVec3], triangles: &[[u32; 3]]) -> Res
                     return first_error(positions, &chunk[..=i], number * TRIANGLES_AT_ONCE);
                 };
                 bounds = bounds.including(position);
-                // What is finite times zero is zero.
+                // Adds zero for finite coordinates and NaN otherwise.
                 offence += position * 0.0;
             }
         }
         if offence == DVec3::ZERO { Ok(bounds) } else { first_error(positions, chunk, number * TRIANGLES_AT_ONCE) }
     };
     let parts: Vec<_> = triangles.par_chunks(TRIANGLES_AT_ONCE).enumerate().map(bounds_of).collect();
-    // In order, so that the first error is the one that counts.
+    // Merge in order, so that the first error is reported.
     parts.into_iter().try_fold(Aabb::EMPTY, |bounds, part| Ok(bounds.union(part?)))
 }
 
-/// The first error among triangles, which are numbered from `first` on; no bounds if there is none.
+/// Returns the first error among triangles that are numbered from `first` on; empty bounds if
+/// valid.
 fn first_error(positions: &[DVec3], triangles: &[[u32; 3]], first: usize) -> Result<Aabb, BvhError> {
     for (i, triangle) in triangles.iter().enumerate() {
         for &vertex in triangle {

@@ -1,9 +1,17 @@
-//! Sums that keep the bits rounded away (Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher
-//! Summen", 1974).
+//! Compensated summation (Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation
+//! endlicher Summen", 1974).
 
 use rayon::prelude::*;
 
 /// A running sum with its accumulated rounding error.
+///
+/// ```
+/// use isochore_mesh::CompensatedSum;
+///
+/// let mut sum = CompensatedSum::default();
+/// [1.0, 1e100, -1e100].into_iter().for_each(|value| sum.add(value));
+/// assert_eq!(sum.value(), 1.0);
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CompensatedSum {
     sum: f64,
@@ -21,9 +29,9 @@ impl CompensatedSum {
         self.sum = sum;
     }
 
-    /// The sum so far.
+    /// The sum of all added values.
     pub fn value(self) -> f64 {
-        // Past the largest number the error term is not a number, while the sum still is one.
+        // After overflow the error term is NaN, while the sum itself is infinite.
         if self.sum.is_finite() { self.sum + self.lost } else { self.sum }
     }
 
@@ -33,13 +41,18 @@ impl CompensatedSum {
     }
 }
 
-/// Terms added up in one go. Changing it changes the last bits of large sums.
+/// Terms per chunk. A different value changes the last bits of long sums.
 const CHUNK: usize = 4096;
 
-/// Sums `N` series of `count` terms at once, in parallel, with the same bits for any number of threads.
+/// Sums `N` series of `count` terms in parallel. The bits do not depend on the number of threads.
+///
+/// ```
+/// let [count, sum] = isochore_mesh::sum_terms(101, |index| [1.0, index as f64]);
+/// assert_eq!([count, sum], [101.0, 5050.0]);
+/// ```
 pub fn sum_terms<const N: usize>(count: usize, term: impl Fn(usize) -> [f64; N] + Sync) -> [f64; N] {
     let sum_chunk = |chunk: usize| {
-        // Sums beside each other, and what they lost, so that registers take several of them.
+        // Sums and errors in separate arrays, so that several series fit into one register.
         let (mut sums, mut lost) = ([0.0; N], [0.0; N]);
         for index in chunk * CHUNK..((chunk + 1) * CHUNK).min(count) {
             let values = term(index);
@@ -52,6 +65,7 @@ pub fn sum_terms<const N: usize>(count: usize, term: impl Fn(usize) -> [f64; N] 
         std::array::from_fn::<_, N, _>(|k| CompensatedSum { sum: sums[k], lost: lost[k] })
     };
     let chunks = count.div_ceil(CHUNK);
+    // Chunks have a fixed length, and their sums are merged in order on this thread.
     let partial: Vec<_> = match chunks {
         0 | 1 => (0..chunks).map(sum_chunk).collect(),
         _ => (0..chunks).into_par_iter().map(sum_chunk).collect(),
@@ -68,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn small_terms_beside_large_ones_survive() {
+    fn small_terms_survive_large_ones() {
         let mut sum = CompensatedSum::default();
         [1.0, 1e100, 1.0, -1e100].into_iter().for_each(|value| sum.add(value));
         assert_eq!(sum.value(), 2.0);
@@ -85,7 +99,7 @@ mod tests {
         };
         assert_eq!(with_threads(1), with_threads(2));
         assert_eq!(with_threads(1), with_threads(8));
-        // The harmonic number to its full precision: Euler's constant + ln n + 1/2n − 1/12n².
+        // The harmonic number to full precision: Euler's constant + ln n + 1/2n − 1/12n².
         let [_, harmonic] = with_threads(2).map(f64::from_bits);
         let exact = 0.577_215_664_901_532_9 + libm::log(1e5) + 0.5e-5 - 1.0 / 12e10;
         assert!((harmonic - exact).abs() < 2.0 * f64::EPSILON * exact);

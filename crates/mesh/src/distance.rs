@@ -1,4 +1,4 @@
-//! What a signed distance is, whatever it is computed from.
+//! The signed distance interface.
 
 use std::fmt::Debug;
 
@@ -6,47 +6,64 @@ use glam::DVec3;
 
 use crate::{Aabb, DistanceBlock, PointBlock};
 
-/// A signed distance function with the analytic gradient of the very function that gives its values.
+/// A signed distance function and its analytic gradient.
 ///
-/// The same point gives the same bits in every lane and whatever the other lanes hold.
+/// The gradient is that of the function that is evaluated, not of an idealized distance. A point
+/// yields the same bits in every lane, regardless of the points in the other lanes.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_mesh::{Distance, Torus};
+///
+/// let torus = Torus::new(2.0, 0.5)?;
+/// let (distance, gradient) = torus.sample(DVec3::new(3.0, 0.0, 0.0));
+/// assert_eq!(distance, 0.5);
+/// assert_eq!(gradient, DVec3::X);
+/// # Ok::<(), isochore_mesh::ShapeError>(())
+/// ```
 pub trait Distance: Debug + Send + Sync {
-    /// Distances and gradients at `points`, into `out`.
+    /// Writes distances and gradients at `points` to `out`.
     fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock);
 
-    /// [`sample_into`](Self::sample_into), perhaps in single precision and then faster: for flows, whose points are many.
+    /// Like [`sample_into`](Self::sample_into), but implementations may compute in single precision
+    /// for speed. Meant for flows, which sample many points.
     fn sample_single_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
         self.sample_into(points, out);
     }
 
-    /// No value of [`sample_single_into`](Self::sample_single_into) is farther from that of [`sample_into`](Self::sample_into)
-    /// than this, model units.
+    /// Upper bound on the difference between the values of
+    /// [`sample_single_into`](Self::sample_single_into) and [`sample_into`](Self::sample_into),
+    /// model units.
     fn single_error(&self) -> f64 {
         0.0
     }
 
-    /// Box that holds the surface, where the distance is zero.
+    /// Bounding box of the surface, the zero set of the distance.
     fn bounds(&self) -> Aabb;
 
     /// Centroid of the volume inside the surface.
     fn centroid(&self) -> DVec3;
 
-    /// The values can be trusted up to this far outside the surface; beyond, they may be infinite. Infinite for closed forms.
+    /// Distance outside the surface up to which values are reliable, model units. Beyond it they
+    /// may be infinite. Infinite for closed forms.
     fn reach(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// Upper bound on the length of the gradient outside the surface. One for exact distances; more for an interpolant.
+    /// Upper bound on the length of the gradient outside the surface: 1 for exact distances, more
+    /// for an interpolant.
     fn lipschitz(&self) -> f64 {
         1.0
     }
 
-    /// Length below which the surface shows nothing, model units: what is this fine takes on its shape. By default an eighth of
-    /// the shortest extent; where the distance is sampled, the distance between samples.
+    /// Size of the finest detail of the surface, model units; anything smaller takes on the shape
+    /// of the surface. By default an eighth of the shortest extent. For a sampled distance it is
+    /// the spacing of the samples.
     fn detail(&self) -> f64 {
         0.125 * self.bounds().size().min_element()
     }
 
-    /// Distance and gradient at one point.
+    /// Returns the distance and the gradient at one point.
     fn sample(&self, point: DVec3) -> (f64, DVec3) {
         let mut out = DistanceBlock::FAR;
         self.sample_into(&PointBlock::splat(point), &mut out);

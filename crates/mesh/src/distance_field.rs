@@ -1,13 +1,15 @@
-//! The signed distance of a mesh, sampled on a grid and interpolated by a cubic spline.
+//! Signed distance to a mesh, sampled on a grid and interpolated by a cubic spline.
 
 mod exact_distance;
 mod flat_triangle;
-mod grain;
 mod grid;
 mod interpolant;
+mod lanes;
+mod leaf_block;
 mod lipschitz;
 mod oriented_box;
 mod packet;
+mod packet_search;
 mod patches;
 mod preparation;
 mod real;
@@ -15,7 +17,6 @@ mod row_crossings;
 mod sampling;
 mod signs;
 mod spline;
-mod vector;
 
 #[cfg(test)]
 mod tests;
@@ -30,12 +31,13 @@ use crate::{Aabb, Bvh, BvhError, Cancelled, Distance, DistanceBlock, Monitor, Po
 
 pub use grid::Grid;
 use interpolant::Interpolant;
-use packet::PacketSearch;
+use packet_search::PacketSearch;
 
-/// How far a grid reaches beyond the mesh.
+/// Padding of a distance grid around the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Padding {
-    /// So far that the interpolant can be trusted up to this distance outside the surface, model units: the support of a tool.
+    /// Enough that the interpolant is reliable up to this distance outside the surface, model
+    /// units. Use the support of a tool.
     Reach(f64),
     /// At least this length on every side, model units.
     Length(f64),
@@ -43,63 +45,73 @@ pub enum Padding {
     Cells(usize),
 }
 
-/// What to sample.
+/// Options for sampling a [`DistanceField`].
+///
+/// ```
+/// use isochore_mesh::{DistanceFieldOptions, Padding};
+///
+/// let options = DistanceFieldOptions { resolution: 32, padding: Padding::Reach(0.5), ..Default::default() };
+/// assert_eq!(options.band, f64::INFINITY);
+/// assert_eq!(options.memory_limit, 4 << 30);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DistanceFieldOptions {
-    /// Cells on the longest side of the mesh, padding not counted; at least 4.
+    /// Cells along the longest side of the mesh, without padding; at least 4.
     pub resolution: usize,
-    /// What to add around the mesh.
+    /// Padding around the mesh.
     pub padding: Padding,
-    /// Distances are told apart up to this far from the surface, model units; nodes farther away, inside or outside, have this
-    /// distance, and cost nearly nothing. Infinite for all.
+    /// Half width of the band around the surface in which distances are computed, model units.
+    /// Nodes farther away, inside or outside, are set to this distance at almost no cost. Infinity
+    /// computes all distances.
     pub band: f64,
-    /// Bytes that the grid may take at most while it is built, estimated before any is taken: 16 a node. The hierarchy of the mesh
-    /// takes about 180 bytes a triangle besides, until the field is built.
+    /// Upper limit on the bytes of the grid during construction, 16 per node. The size is estimated
+    /// and checked before any allocation. The hierarchy of the mesh takes about 180 bytes per
+    /// triangle in addition until the field is complete.
     pub memory_limit: u64,
 }
 
 impl Default for DistanceFieldOptions {
-    /// 64 cells, padded by 2, in at most 4 GiB, without end of the band.
+    /// 64 cells with a padding of 2 cells, at most 4 GiB, and an infinite band.
     fn default() -> Self {
         Self { resolution: 64, padding: Padding::Cells(2), band: f64::INFINITY, memory_limit: 4 << 30 }
     }
 }
 
-/// Why there is no distance field.
+/// Errors when sampling a distance field.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum DistanceFieldError {
-    /// The mesh cannot be searched.
+    /// The mesh has no triangles, an index out of range or a coordinate that is not finite.
     #[error(transparent)]
     Mesh(#[from] BvhError),
-    /// The grid is too coarse to say anything.
+    /// The grid is too coarse to represent a shape.
     #[error(
         "a resolution of {resolution} cells is too low: at least {least} are needed on the longest side of the mesh"
     )]
     Resolution {
-        /// Cells asked for.
+        /// Requested cells.
         resolution: usize,
-        /// Fewest that are accepted.
+        /// Smallest accepted number of cells.
         least: usize,
     },
     /// The reach or padding is negative or not finite.
-    #[error("a distance field can be padded by zero or a positive length, not by {length}")]
+    #[error("the padding of a distance field must be zero or a positive length, not {length}")]
     Padding {
         /// The offending value, model units.
         length: f64,
     },
-    /// The band has no width.
-    #[error("a band of distances is wider than zero, not {width}")]
+    /// The band is zero, negative or NaN.
+    #[error("the band of a distance field must be wider than zero, not {width}")]
     Band {
         /// The offending value, model units.
         width: f64,
     },
-    /// All vertices coincide, or lie so far apart that their distance overflows.
-    #[error("a mesh with an extent of {extent} has no distance grid")]
+    /// All vertices coincide, or the extent of the mesh overflows.
+    #[error("a distance grid needs a mesh with a positive, finite extent, not {extent}")]
     Extent {
         /// Longest side of the bounding box, model units.
         extent: f64,
     },
-    /// The grid would not fit into the memory it may take.
+    /// The grid would exceed the memory limit.
     #[error(
         "a distance grid of {} × {} × {} samples takes {bytes} bytes to build, more than the limit of {limit}: \
          lower the resolution or the reach", .dims[0], .dims[1], .dims[2]
@@ -112,14 +124,15 @@ pub enum DistanceFieldError {
         /// [`DistanceFieldOptions::memory_limit`].
         limit: u64,
     },
-    /// The triangles of a closed mesh face inward.
+    /// The triangles of a closed mesh face inward, so its volume is negative.
     #[error("the mesh is inside out: it encloses the volume {volume}; turn its triangles around")]
     InsideOut {
         /// The negative volume, cubic model units.
         volume: f64,
     },
-    /// The winding numbers of an open mesh do not fall off to outside where the reach ends.
-    #[error("the mesh is open and its inside has no end: node {node:?} at the border of the grid counts as inside")]
+    /// The inside of an open mesh extends to the border of the grid, because its winding numbers do
+    /// not drop below one half within the reach.
+    #[error("the mesh is open and its inside is unbounded: node {node:?} at the border of the grid counts as inside")]
     Unbounded {
         /// Coordinates of the offending node, model units.
         node: [f64; 3],
@@ -129,14 +142,28 @@ pub enum DistanceFieldError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Signed distances to a mesh on a regular grid, and the tricubic B-spline through them.
+/// Signed distances to a mesh on a regular grid, interpolated by a tricubic B-spline.
 ///
-/// The spline is twice continuously differentiable, and its gradient is that of the spline itself, never interpolated on its own:
-/// fields made of both stay divergence-free. It smooths edges and medial surfaces over about two cells. Beyond the cells that have
-/// all their neighbors the value is infinite and the gradient zero.
+/// The spline is twice continuously differentiable. Its gradient is the gradient of the spline
+/// itself, not a separately interpolated quantity, so fields built from the two stay
+/// divergence-free. The spline smooths edges and medial surfaces over about two cells. Outside the
+/// cells that have all their neighbors, the value is infinite and the gradient zero.
 ///
-/// Of a closed mesh, that is inside which its winding number exceeds one half; of an open one likewise, which puts a soft end
-/// to the inside across each hole: there the sign changes away from the surface, where the distance is not zero.
+/// A point is inside if its winding number exceeds one half. For an open mesh this closes each hole
+/// with a soft boundary: across it the sign changes although the distance is not zero.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_mesh::{Distance, DistanceField, DistanceFieldOptions, NoProgress, Padding, primitives};
+///
+/// let sphere = primitives::icosphere(1.0, 4);
+/// let options = DistanceFieldOptions { resolution: 24, padding: Padding::Reach(0.5), ..Default::default() };
+/// let field = DistanceField::new(&sphere, &options, &NoProgress)?;
+/// let (distance, gradient) = field.sample(DVec3::new(0.0, 0.0, 1.25));
+/// assert!((distance - 0.25).abs() < 0.01);
+/// assert!((gradient - DVec3::Z).length() < 0.05);
+/// # Ok::<(), isochore_mesh::DistanceFieldError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct DistanceField {
     grid: Grid,
@@ -149,22 +176,28 @@ pub struct DistanceField {
     is_closed: bool,
 }
 
-/// Cells before the end of the band where the field is trusted no more. Larger: less reach. Smaller than 2: the smoothed kink at
-/// the end of the band would count as distance.
+/// Width of the zone at the end of the band in which the field is not trusted, in cells. Larger:
+/// shorter reach. Smaller than 2: the smoothed kink at the end of the band would count as distance.
 const KINK_CELLS: f64 = 2.0;
 
-/// Nodes of the grid for each triangle above which a better hierarchy is worth its time. Larger: slower searches of fine grids.
-/// Smaller: longer preparations for coarse ones.
-const NODES_A_TRIANGLE: usize = 4;
+/// Grid nodes per triangle above which a finer hierarchy pays off. Larger: slower searches of fine
+/// grids. Smaller: longer preparation for coarse grids.
+const NODES_PER_TRIANGLE: usize = 4;
 
-/// Bytes a node takes while the field is built: sample, coefficient, and a copy in `f64` between the filters.
+/// Bytes per node during construction: sample, coefficient, and an `f64` copy between the filters.
 const BYTES_PER_NODE: u64 = 4 + 4 + 8;
 
 impl DistanceField {
     /// Samples the distance to `mesh`.
     ///
     /// # Errors
-    /// See [`DistanceFieldError`].
+    /// [`DistanceFieldError::Mesh`] if the mesh cannot be searched,
+    /// [`DistanceFieldError::Resolution`], [`Padding`](DistanceFieldError::Padding),
+    /// [`Band`](DistanceFieldError::Band), [`Extent`](DistanceFieldError::Extent) and
+    /// [`Memory`](DistanceFieldError::Memory) for a grid that cannot be built,
+    /// [`InsideOut`](DistanceFieldError::InsideOut) for a closed mesh of negative volume,
+    /// [`Unbounded`](DistanceFieldError::Unbounded) for an open mesh that is inside at the border
+    /// of the grid, and [`Cancelled`](DistanceFieldError::Cancelled).
     pub fn new(
         mesh: &TriMesh,
         options: &DistanceFieldOptions,
@@ -180,9 +213,11 @@ impl DistanceField {
         if bytes > options.memory_limit || grid.len() > u32::MAX as usize {
             return Err(DistanceFieldError::Memory { dims: grid.dims, bytes, limit: options.memory_limit });
         }
-        let is_worth_it = grid.len() / NODES_A_TRIANGLE > mesh.triangles.len();
-        let clustering = if is_worth_it { Clustering::Fine } else { Clustering::Coarse };
+        let is_fine = grid.len() / NODES_PER_TRIANGLE > mesh.triangles.len();
+        let clustering = if is_fine { Clustering::Fine } else { Clustering::Coarse };
         let (bvh, (open_edges, volume_and_centroid)) =
+            // The hierarchy is clustered on one thread. The other threads meanwhile find open edges
+            // and volume.
             Bvh::within(surface, &mesh.positions, &mesh.triangles, clustering, || {
                 let open_edges = open_edges(&mesh.triangles, mesh.positions.len());
                 let volume_and_centroid = open_edges.is_empty().then(|| mesh.volume_and_centroid(surface));
@@ -200,37 +235,38 @@ impl DistanceField {
         let (mut samples, sample_error) = sampling::unsigned(&search, &bvh, &grid, options.band, monitor)?;
         monitor.check("signs", 0.0)?;
         signs::negate_inside(&mut samples, mesh, &open_edges, &bvh, &grid, monitor)?;
-        // At the end of the band the distance has a kink, which the spline smooths as it does others.
-        let reach_of_band = (options.band - KINK_CELLS * grid.cell).max(0.0);
+        // At the end of the band the distance has a kink, which the spline smooths like any other.
+        let band_reach = (options.band - KINK_CELLS * grid.cell).max(0.0);
         let reach = match options.padding {
             Padding::Reach(reach) => {
-                let reach = reach.min(reach_of_band);
+                let reach = reach.min(band_reach);
                 check_border(&grid, &samples, reach)?;
                 reach
             }
-            Padding::Length(length) => (length - 2.0 * grid.cell).max(0.0).min(reach_of_band),
-            Padding::Cells(cells) => (cells.saturating_sub(2) as f64 * grid.cell).min(reach_of_band),
+            Padding::Length(length) => (length - 2.0 * grid.cell).max(0.0).min(band_reach),
+            Padding::Cells(cells) => (cells.saturating_sub(2) as f64 * grid.cell).min(band_reach),
         };
         let interpolant = Interpolant::new(&grid, &samples, monitor)?;
         Ok(Self { grid, samples, sample_error, interpolant, surface, centroid, reach, is_closed })
     }
 
-    /// Where the samples lie.
+    /// The grid of sample positions.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// Signed distances at the nodes, in [z, y, x] order: x fastest. Model units.
+    /// Signed distances at the nodes in [z, y, x] order (x fastest), model units.
     pub fn samples(&self) -> &[f32] {
         &self.samples
     }
 
-    /// No sample is farther from the exact distance than this, model units.
+    /// Upper bound on the error of a sample against the exact distance, model units.
     pub fn sample_error(&self) -> f64 {
         self.sample_error
     }
 
-    /// Whether each edge of the mesh is used as often in one direction as in the other. If not, its inside is a matter of degree.
+    /// Whether each edge of the mesh is used equally often in both directions. If not, the mesh is
+    /// open and its inside is defined by the winding number alone.
     pub fn is_closed(&self) -> bool {
         self.is_closed
     }
@@ -253,7 +289,7 @@ impl Distance for DistanceField {
         self.surface
     }
 
-    /// Centroid of the volume; of the area, if the mesh is open or encloses nothing.
+    /// Centroid of the volume. Centroid of the area if the mesh is open or encloses no volume.
     fn centroid(&self) -> DVec3 {
         self.centroid
     }
@@ -271,7 +307,8 @@ impl Distance for DistanceField {
     }
 }
 
-/// At the border of the grid, beyond which the field is cut off, the distance must exceed the reach.
+/// Checks that the distance exceeds the reach at the border of the grid, beyond which the field is
+/// cut off.
 fn check_border(grid: &Grid, samples: &[f32], reach: f64) -> Result<(), DistanceFieldError> {
     let [nx, ny, nz] = grid.dims;
     let is_border = |&index: &usize| {

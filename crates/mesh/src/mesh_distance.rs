@@ -16,14 +16,29 @@ use crate::{
     SelfIntersections, TriMesh, WindingNumber,
 };
 
-/// Height over longest edge of a triangle below which its normal is not trusted with signs. Larger: meshes with needles would be
-/// judged by winding number, which is slower. Smaller: rounding turns such a normal by 1e-16 over this number.
+/// Ratio of height to longest edge of a triangle below which its normal is not trusted for signs.
+/// Larger: meshes with needles use the winding number, which is slower. Smaller: rounding rotates
+/// such a normal by 1e-16 over this number.
 const NEEDLE: f64 = 1e-6;
 
-/// The exact signed distance to a mesh, one query of its hierarchy at a time.
+/// The exact signed distance to a mesh, with one query of its hierarchy per point.
 ///
-/// Inside is where the winding number exceeds one half. Of a single closed, oriented manifold that does not cross itself, and has no
-/// needles, the nearest feature tells the same faster.
+/// A point is inside if its winding number exceeds one half. For a single closed, oriented manifold
+/// without self-intersections or needles, the normal of the nearest feature gives the same sign
+/// faster.
+///
+/// ```
+/// use glam::{DVec3, dvec3};
+/// use isochore_mesh::{Distance, MeshDistance, NoProgress, primitives};
+///
+/// let cube = primitives::box_mesh(DVec3::ONE, [1, 1, 1]);
+/// let distance = MeshDistance::new(&cube, &NoProgress)?;
+/// let (value, gradient) = distance.sample(dvec3(0.0, 0.2, 3.0));
+/// assert!((value - 2.0).abs() < 1e-12);
+/// assert!((gradient - DVec3::Z).length() < 1e-12);
+/// assert!(distance.is_inside(DVec3::ZERO));
+/// # Ok::<(), isochore_mesh::SelfIntersectionError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MeshDistance {
     bvh: Arc<Bvh>,
@@ -32,7 +47,7 @@ pub struct MeshDistance {
     centroid: DVec3,
 }
 
-/// How inside and outside are told apart.
+/// Method that distinguishes inside from outside.
 #[derive(Debug, Clone)]
 enum Sides {
     PseudoNormals(Box<PseudoNormals>),
@@ -40,10 +55,12 @@ enum Sides {
 }
 
 impl MeshDistance {
-    /// Prepares the distance to `mesh`, and looks whether the fast way to tell inside from outside can be trusted.
+    /// Prepares the distance to `mesh`, and checks whether pseudonormals can decide its signs.
     ///
     /// # Errors
-    /// See [`SelfIntersectionError`].
+    /// [`SelfIntersectionError::Mesh`] if the mesh has no triangles, an index out of range or a
+    /// coordinate that is not finite; [`SelfIntersectionError::Cancelled`] if the monitor stops the
+    /// work.
     pub fn new(mesh: &TriMesh, monitor: &dyn Monitor) -> Result<Self, SelfIntersectionError> {
         let bvh = Arc::new(Bvh::new(&mesh.positions, &mesh.triangles)?);
         let is_simple =
@@ -60,16 +77,16 @@ impl MeshDistance {
         Ok(Self { bounds: bvh.bounds(), centroid, bvh, sides })
     }
 
-    /// The nearest point of the mesh.
+    /// Returns the nearest point of the mesh.
     pub fn closest_point(&self, point: DVec3) -> ClosestPoint {
         self.bvh.closest_point(point)
     }
 
-    /// Whether `point` lies inside.
+    /// Whether `point` is inside.
     pub fn is_inside(&self, point: DVec3) -> bool {
         match &self.sides {
             Sides::PseudoNormals(normals) => {
-                let local = self.bvh.frame().inward(point);
+                let local = self.bvh.frame().to_unit(point);
                 let slot = self.bvh.nearest(local, None).slot;
                 let (nearest, _) = closest_on_triangle(local, &self.bvh.corners(slot));
                 normals.is_inside(&self.bvh, local, slot, &nearest)
@@ -78,13 +95,13 @@ impl MeshDistance {
         }
     }
 
-    /// Whether inside and outside are told apart by the nearest feature alone.
+    /// Whether the normal of the nearest feature alone decides the sign.
     pub fn uses_pseudo_normals(&self) -> bool {
         matches!(self.sides, Sides::PseudoNormals(_))
     }
 
     fn signed(&self, point: DVec3) -> (f64, DVec3) {
-        let local = self.bvh.frame().inward(point);
+        let local = self.bvh.frame().to_unit(point);
         let found = self.bvh.nearest(local, None);
         let (nearest, _) = closest_on_triangle(local, &self.bvh.corners(found.slot));
         let is_inside = match &self.sides {
@@ -111,13 +128,14 @@ impl Distance for MeshDistance {
         self.bounds
     }
 
-    /// Centroid of the volume; of the area, if the mesh is open or encloses nothing.
+    /// Centroid of the volume. Centroid of the area if the mesh is open or encloses no volume.
     fn centroid(&self) -> DVec3 {
         self.centroid
     }
 }
 
-/// Whether a mesh bounds one connected volume, if it does not cross itself, and has trustworthy normals.
+/// Whether a mesh without self-intersections bounds one connected volume and has trustworthy
+/// normals.
 fn is_simple(mesh: &TriMesh) -> bool {
     let check = mesh.check();
     check.is_closed()
@@ -132,14 +150,15 @@ fn is_simple(mesh: &TriMesh) -> bool {
         })
 }
 
-/// Centroid of the volume inside a closed mesh within `bounds`, given that volume and its centroid; of the area, if it is open or
-/// encloses nothing.
+/// Centroid of the surface of a mesh. For a closed mesh, `closed` is its volume and the centroid of
+/// the volume, which is returned. The centroid of the area is returned if the mesh is open or
+/// encloses almost no volume.
 pub(crate) fn surface_centroid(mesh: &TriMesh, bounds: Aabb, closed: Option<(f64, DVec3)>) -> DVec3 {
     let size = bounds.size().max_element();
     if let Some((_, centroid)) = closed.filter(|(volume, _)| volume.abs() > LEAST_VOLUME * size * size * size) {
         return centroid;
     }
-    // About the center, so that nothing cancels far from the origin.
+    // Relative to the center, to avoid cancellation far from the origin.
     let center = bounds.center();
     let [area, x, y, z] = sum_terms(mesh.triangles.len(), |triangle| {
         let [a, b, c] = mesh.corners(triangle).map(|corner| corner - center);
@@ -150,6 +169,6 @@ pub(crate) fn surface_centroid(mesh: &TriMesh, bounds: Aabb, closed: Option<(f64
     if area > 0.0 { center + DVec3::new(x, y, z) / area } else { center }
 }
 
-/// Share of the bounding cube below which a volume has no centroid worth the name. Larger: thin sheets would get the centroid of
-/// their area. Smaller: rounding could put the centroid anywhere.
+/// Fraction of the bounding cube below which a volume has no reliable centroid. Larger: thin sheets
+/// get the centroid of their area. Smaller: rounding could move the centroid anywhere.
 const LEAST_VOLUME: f64 = 1e-9;

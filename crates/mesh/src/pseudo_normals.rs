@@ -3,11 +3,14 @@ use glam::DVec3;
 use crate::bvh::OnTriangle;
 use crate::{Bvh, Feature, Topology};
 
-/// Normals of faces, edges and vertices that tell on which side of the surface a point lies, whatever feature it is nearest to.
+/// Normals of faces, edges and vertices. The normal of the nearest feature decides on which side of
+/// the surface a point is.
 ///
-/// An edge has the sum of its two faces' unit normals, a vertex the sum of those around it weighted by their angles. J. Bærentzen and
-/// H. Aanæs, *Signed Distance Computation Using the Angle Weighted Pseudonormal* (2005). Valid for closed, oriented manifolds
-/// that do not cross themselves; lengths do not matter.
+/// The normal of an edge is the sum of the unit normals of its two faces. The normal of a vertex is
+/// the sum of the adjacent face normals, weighted by their angles at the vertex (J. Bærentzen and
+/// H. Aanæs, *Signed Distance Computation Using the Angle Weighted Pseudonormal*, 2005). The method
+/// is valid for closed, oriented manifolds without self-intersections. Lengths of the normals do
+/// not matter.
 #[derive(Debug, Clone)]
 pub(crate) struct PseudoNormals {
     /// In leaf order.
@@ -18,7 +21,7 @@ pub(crate) struct PseudoNormals {
 }
 
 impl PseudoNormals {
-    /// Normals of a surface with this many vertices.
+    /// Computes the normals of a surface with `vertices` vertices.
     pub(crate) fn new(bvh: &Bvh, vertices: usize) -> Self {
         let topology = Topology::of_triangles(bvh.triangles(), vertices);
         let faces: Vec<DVec3> = (0..bvh.triangles().len() as u32)
@@ -46,12 +49,13 @@ impl PseudoNormals {
         normals
     }
 
-    /// Whether a point of the unit frame lies inside, given its nearest triangle and the nearest point there.
+    /// Whether a point of the unit frame is inside, given its nearest triangle and nearest point.
     pub(crate) fn is_inside(&self, bvh: &Bvh, point: DVec3, slot: u32, nearest: &OnTriangle) -> bool {
         let corners = bvh.corners(slot);
         let slot = slot as usize;
         match nearest.feature {
-            // From a corner, because the offset from the nearest point is all rounding close to the surface.
+            // Relative to a corner, because close to the surface the offset from the nearest point
+            // is mostly rounding.
             Feature::Face => self.faces[slot].dot(point - corners[0]) < 0.0,
             Feature::Edge(k) => {
                 let edge = self.topology.triangle_edges(slot)[k as usize];

@@ -1,7 +1,8 @@
-//! Triangles of a mesh that cross each other, found exactly.
+//! Exact detection of self-intersections.
 //!
-//! Boxes say which triangles are near each other; a plane between them, found in vector registers, says for most of these that
-//! they do not cross; exact predicates say it for the rest.
+//! The search runs in three stages. A hierarchy of boxes finds pairs of triangles that are close to
+//! each other. A separating plane, found in vector registers, proves most of these pairs disjoint.
+//! Exact predicates decide the remaining pairs.
 
 mod box_tree;
 mod common_corners;
@@ -23,17 +24,17 @@ use common_corners::CommonCorners;
 use exact_triangle::{ExactTriangle, scaled};
 use separation::{LANES, PairBlock};
 
-/// Pairs of nodes of the hierarchy that the work is divided into, if there are as many. More costs time to list them; fewer
-/// balances worse and hears a cancellation later.
+/// Target number of node pairs into which the work is divided. More: listing them takes longer.
+/// Fewer: worse load balance and a slower reaction to cancellation.
 const TASKS: usize = 4096;
 
-/// Tasks between two looks at the monitor.
+/// Tasks between two checks of the monitor.
 const TASKS_PER_CHUNK: usize = 64;
 
-/// Why self-intersections could not be found.
+/// Errors when searching for self-intersections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SelfIntersectionError {
-    /// The mesh cannot be searched.
+    /// The mesh has no triangles, an index out of range or a coordinate that is not finite.
     #[error(transparent)]
     Mesh(#[from] BvhError),
     /// The monitor stopped the work.
@@ -41,7 +42,22 @@ pub enum SelfIntersectionError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Pairs of triangles of one mesh that have points in common beyond the vertices and edges that they share.
+/// Pairs of triangles of a mesh that intersect beyond their common vertices and edges.
+///
+/// ```
+/// use glam::dvec3;
+/// use isochore_mesh::{NoProgress, SelfIntersections, TriMesh};
+///
+/// // The second triangle pierces the first.
+/// let positions = vec![
+///     dvec3(0.0, 0.0, 0.0), dvec3(2.0, 0.0, 0.0), dvec3(0.0, 2.0, 0.0),
+///     dvec3(0.5, 0.5, -1.0), dvec3(0.5, 0.5, 1.0), dvec3(3.0, 3.0, 0.0),
+/// ];
+/// let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]);
+/// let found = SelfIntersections::of(&mesh, &NoProgress)?;
+/// assert_eq!(found.pairs(), [[0, 1]]);
+/// # Ok::<(), isochore_mesh::SelfIntersectionError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SelfIntersections {
     pairs: Vec<[u32; 2]>,
@@ -49,28 +65,31 @@ pub struct SelfIntersections {
 }
 
 impl SelfIntersections {
-    /// Finds all pairs. The answer is exact: predicates are evaluated as if without rounding.
+    /// Finds all pairs. The result is exact: predicates are evaluated as if without rounding.
     ///
-    /// Corners at equal positions count as one vertex, whatever their indices. Of two triangles
+    /// Corners at equal positions count as one vertex, even if their indices differ. Two triangles
     ///
-    /// - without a common vertex, any contact counts, be it in a point;
-    /// - with a common vertex, any contact elsewhere;
-    /// - with a common edge, only that both lie in one plane on the same side of the edge;
-    /// - with all vertices in common, they always count.
+    /// - without a common vertex intersect if they touch anywhere, even in a single point;
+    /// - with one common vertex intersect if they touch anywhere else;
+    /// - with a common edge intersect if they are in one plane on the same side of the edge;
+    /// - with all vertices in common always intersect.
     ///
-    /// Triangles without area have no inside to be crossed and are left out.
+    /// Triangles without area are ignored.
     ///
-    /// While it works it holds at most 100 bytes a triangle of a closed mesh, and what it finds: time and memory are linear
-    /// in the numbers of triangles and of pairs whose boxes overlap.
+    /// For a closed mesh the search takes at most 100 bytes per triangle, plus the result. Time and
+    /// memory are linear in the number of triangles and the number of pairs whose boxes overlap.
     ///
     /// # Errors
-    /// See [`SelfIntersectionError`].
+    /// [`SelfIntersectionError::Mesh`] if the mesh has no triangles, an index out of range or a
+    /// coordinate that is not finite; [`SelfIntersectionError::Cancelled`] if the monitor stops the
+    /// work.
     pub fn of(mesh: &TriMesh, monitor: &dyn Monitor) -> Result<Self, SelfIntersectionError> {
         checked_bounds(&mesh.positions, &mesh.triangles)?;
         Ok(Self::among(&mesh.positions, &mesh.triangles, monitor)?)
     }
 
-    /// Finds all pairs among one triangle or more with valid indices and finite corners.
+    /// Finds all pairs among `triangles`, of which there is at least one. Indices must be valid and
+    /// corners finite.
     pub(crate) fn among(positions: &[DVec3], triangles: &[[u32; 3]], monitor: &dyn Monitor) -> Result<Self, Cancelled> {
         let corners = triangles.iter().flatten().map(|&vertex| positions[vertex as usize]);
         let frame = UnitFrame::around(Aabb::of(corners));
@@ -91,8 +110,8 @@ impl SelfIntersections {
             .collect::<Result<_, Cancelled>>()?;
 
         let mut pairs: Vec<[u32; 2]> = (found.into_iter().flatten())
-            .map(|places| {
-                let [a, b] = places.map(|place| search.tree.order[place as usize]);
+            .map(|slots| {
+                let [a, b] = slots.map(|slot| search.tree.order[slot as usize]);
                 [a.min(b), a.max(b)]
             })
             .collect();
@@ -103,7 +122,7 @@ impl SelfIntersections {
         Ok(Self { pairs, triangles })
     }
 
-    /// Whether no triangle crosses another.
+    /// Whether no two triangles intersect.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
@@ -113,15 +132,15 @@ impl SelfIntersections {
         &self.pairs
     }
 
-    /// Indices of the triangles that cross at least one other, in ascending order.
+    /// Indices of the triangles that intersect at least one other, in ascending order.
     pub fn triangles(&self) -> &[u32] {
         &self.triangles
     }
 
-    /// Sum of the areas of these triangles, square model units.
+    /// Total area of [`triangles`](Self::triangles), square model units.
     ///
     /// # Panics
-    /// If `mesh` has fewer triangles than the one that was searched.
+    /// If `mesh` has fewer triangles than the mesh that was searched.
     pub fn area(&self, mesh: &TriMesh) -> f64 {
         (self.triangles.iter())
             .map(|&triangle| {
@@ -132,32 +151,34 @@ impl SelfIntersections {
     }
 }
 
-/// What is searched.
+/// Input of the search.
 #[derive(Debug)]
 struct Search {
     tree: BoxTree,
-    /// Positions, scaled so that the mesh is about as large as one.
+    /// Positions, scaled so that the mesh has about unit size.
     points: Vec<DVec3>,
     /// Vertex indices, in the order of the tree.
     triangles: Vec<[u32; 3]>,
 }
 
-/// Pairs whose boxes overlap that are collected before they are looked at. Larger leaves the caches; smaller spends time on going
-/// back and forth.
+/// Candidate pairs collected before they are processed. Larger: the list exceeds the caches.
+/// Smaller: more switches between the stages.
 const CANDIDATES: usize = 512;
 
-/// A pair of triangles, by their places and by the vertices of the first and the second, common ones first.
+/// A pair of triangles: their positions in the order of the tree, and their vertex indices with
+/// common ones first.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
-    places: [u32; 2],
+    slots: [u32; 2],
     vertices: [[u32; 3]; 2],
 }
 
-/// Pairs that wait for a proof that they do not cross, by the number of corners that they share.
+/// Pairs that are not yet proved disjoint, by the number of their common corners.
 #[derive(Debug)]
 struct Waiting([Vec<Pair>; 4]);
 
-/// Pairs of places of triangles that cross, below these pairs of nodes.
+/// Returns the intersecting pairs below these pairs of nodes, as positions in the order of the
+/// tree.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
 fn crossings_below(search: &Search, tasks: &[NodePair]) -> Vec<[u32; 2]> {
     let (mut crossings, mut stack) = (Vec::new(), Vec::new());
@@ -165,7 +186,7 @@ fn crossings_below(search: &Search, tasks: &[NodePair]) -> Vec<[u32; 2]> {
     let mut waiting = Waiting([const { Vec::new() }; 4]);
     for &task in tasks {
         stack.push(task);
-        while search.tree.overlapping_places(CANDIDATES, &mut stack, &mut candidates) {
+        while search.tree.overlapping_pairs(CANDIDATES, &mut stack, &mut candidates) {
             search.sort_by_common_corners(&candidates, &mut waiting);
             candidates.clear();
             search.decide(&mut waiting, LANES, &mut crossings);
@@ -176,17 +197,18 @@ fn crossings_below(search: &Search, tasks: &[NodePair]) -> Vec<[u32; 2]> {
 }
 
 impl Search {
-    /// Puts pairs of places among those that wait.
+    /// Adds candidate pairs to the waiting pairs.
     #[inline(always)]
     fn sort_by_common_corners(&self, candidates: &[[u32; 2]], waiting: &mut Waiting) {
-        for &places in candidates {
-            // Most common corners have one index; the few pairs with others are found where no plane separates them.
-            let (first, second) = (&self.triangles[places[0] as usize], &self.triangles[places[1] as usize]);
-            waiting.push(CommonCorners::of(first, second), places, [first, second]);
+        for &slots in candidates {
+            // Most common corners have equal indices. The few with equal positions but different
+            // indices are found later, when no plane separates the pair.
+            let (first, second) = (&self.triangles[slots[0] as usize], &self.triangles[slots[1] as usize]);
+            waiting.push(CommonCorners::of(first, second), slots, [first, second]);
         }
     }
 
-    /// Decides waiting pairs until less than `least` are left of each kind.
+    /// Processes waiting pairs until fewer than `least` remain for each number of common corners.
     #[inline(always)]
     fn decide(&self, waiting: &mut Waiting, least: usize, crossings: &mut Vec<[u32; 2]>) {
         for shared in 0..3 {
@@ -211,11 +233,11 @@ impl Search {
             }
         }
         for pair in std::mem::take(&mut waiting.0[3]) {
-            self.decide_exactly(pair.places, crossings);
+            self.decide_exactly(pair.slots, crossings);
         }
     }
 
-    /// Decides those of the waiting pairs from `first` on that no plane separates.
+    /// Decides the waiting pairs from `first` on that no plane separates.
     #[inline(never)]
     fn decide_on(
         &self,
@@ -225,39 +247,41 @@ impl Search {
         are_separate: &[bool; LANES],
         crossings: &mut Vec<[u32; 2]>,
     ) {
+        // Now compare positions instead of indices. If corners coincide after all, the pair needs
+        // the test for that number of common corners.
         let count = waiting.0[shared].len() - first;
         for lane in (0..count).filter(|&lane| !are_separate[lane]) {
-            let places = waiting.0[shared][first + lane].places;
-            let [one, other] = places.map(|place| self.corners_at(place));
+            let slots = waiting.0[shared][first + lane].slots;
+            let [one, other] = slots.map(|slot| self.corners_at(slot));
             let common = CommonCorners::of(&one, &other);
             if shared == 0 && common.count > 0 {
-                let triangles = [&self.triangles[places[0] as usize], &self.triangles[places[1] as usize]];
-                waiting.push(common, places, triangles);
+                let triangles = [&self.triangles[slots[0] as usize], &self.triangles[slots[1] as usize]];
+                waiting.push(common, slots, triangles);
             } else {
-                self.decide_exactly(places, crossings);
+                self.decide_exactly(slots, crossings);
             }
         }
     }
 
-    fn decide_exactly(&self, places: [u32; 2], crossings: &mut Vec<[u32; 2]>) {
-        let [first, second] = places.map(|place| ExactTriangle::new(self.corners_at(place)));
+    fn decide_exactly(&self, slots: [u32; 2], crossings: &mut Vec<[u32; 2]>) {
+        let [first, second] = slots.map(|slot| ExactTriangle::new(self.corners_at(slot)));
         if first.intersects(&second) {
-            crossings.push(places);
+            crossings.push(slots);
         }
     }
 
-    fn corners_at(&self, place: u32) -> [DVec3; 3] {
-        self.triangles[place as usize].map(|vertex| self.points[vertex as usize])
+    fn corners_at(&self, slot: u32) -> [DVec3; 3] {
+        self.triangles[slot as usize].map(|vertex| self.points[vertex as usize])
     }
 }
 
 impl Waiting {
     #[inline(always)]
-    fn push(&mut self, common: &CommonCorners, places: [u32; 2], [one, other]: [&[u32; 3]; 2]) {
-        // By reference: a copy of so few bytes, read at once, would wait for itself to be written.
+    fn push(&mut self, common: &CommonCorners, slots: [u32; 2], [one, other]: [&[u32; 3]; 2]) {
+        // By reference, because reading so small a copy at once would stall on store forwarding.
         let ([i, j, k], [l, m, n]) = (common.first, common.second);
         let first = [one[i as usize], one[j as usize], one[k as usize]];
         let second = [other[l as usize], other[m as usize], other[n as usize]];
-        self.0[common.count as usize].push(Pair { places, vertices: [first, second] });
+        self.0[common.count as usize].push(Pair { slots, vertices: [first, second] });
     }
 }

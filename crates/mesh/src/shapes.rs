@@ -1,7 +1,7 @@
-//! Signed distances in closed form, each centered at the origin of its own frame.
+//! Signed distances in closed form. Each shape is centered at the origin of its own frame.
 //!
-//! Inside and outside, the values are exact Euclidean distances. Where the distance has no gradient (center, axis, medial
-//! surface) the gradient is zero; it has unit length everywhere else.
+//! The values are exact Euclidean distances, inside and outside. If the distance has no gradient
+//! (center, axis, medial surface), the gradient is zero. Everywhere else it has unit length.
 
 mod capsule;
 mod ellipsoid;
@@ -20,7 +20,14 @@ pub use rounded_box::RoundedBox;
 pub use sphere::Sphere;
 pub use torus::Torus;
 
-/// Why a shape cannot be made.
+/// Errors when constructing a shape.
+///
+/// ```
+/// use isochore_mesh::Sphere;
+///
+/// let error = Sphere::new(0.0).unwrap_err();
+/// assert_eq!(error.to_string(), "the radius of a sphere must be positive and finite, not 0");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ShapeError {
     /// A length that must be positive and finite is not.
@@ -33,31 +40,31 @@ pub enum ShapeError {
         /// The offending value, model units.
         value: f64,
     },
-    /// A box cannot be rounded by more than its smallest half extent, nor by less than nothing.
-    #[error("the rounding of a box must lie between 0 and its smallest half extent {limit}, not {rounding}")]
+    /// The rounding of a box is negative, NaN or larger than the smallest half extent.
+    #[error("the rounding of a box must be between 0 and its smallest half extent {limit}, not {rounding}")]
     Rounding {
         /// The offending value, model units.
         rounding: f64,
         /// The smallest half extent, model units.
         limit: f64,
     },
-    /// A direction of length zero, or of no length at all.
-    #[error("the {what} of a {shape} must have a direction")]
+    /// A direction vector has length zero or is not finite.
+    #[error("the {what} of a {shape} must be finite and not zero")]
     NoDirection {
         /// Name of the shape.
         shape: &'static str,
-        /// Which vector.
+        /// Name of the vector.
         what: &'static str,
     },
-    /// A coordinate is infinite or not a number.
+    /// A coordinate is infinite or NaN.
     #[error("the {what} of a {shape} must be finite")]
     NotFinite {
         /// Name of the shape.
         shape: &'static str,
-        /// Which point.
+        /// Name of the point.
         what: &'static str,
     },
-    /// A torus whose tube reaches its axis would cross itself.
+    /// The tube of a torus reaches its axis, so the torus would intersect itself.
     #[error("the minor radius {minor} of a torus must be smaller than its major radius {major}")]
     TorusCrossesItself {
         /// Radius of the circle, model units.
@@ -65,7 +72,7 @@ pub enum ShapeError {
         /// Radius of the tube, model units.
         minor: f64,
     },
-    /// An ellipsoid so flat or thin that rounding would decide its distances.
+    /// The radii of an ellipsoid differ so much that rounding would dominate its distances.
     #[error(
         "the radii of an ellipsoid must not differ by more than a factor of {limit}, but one is {ratio} times another"
     )]
@@ -77,18 +84,20 @@ pub enum ShapeError {
     },
 }
 
-/// Passes on `value` if it is positive and finite.
+/// Returns `value` if it is positive and finite.
 fn positive(shape: &'static str, length: &'static str, value: f64) -> Result<f64, ShapeError> {
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(ShapeError::NotPositive { shape, length, value }) }
 }
 
-/// 1 / `length`, or zero where the length is zero, so that a product with it is a unit vector or nothing.
+/// 1 / `length`, or zero if the length is zero. The product with a vector of that length is a unit
+/// vector or zero.
 #[inline]
 fn inverse_or_zero(length: f64) -> f64 {
     if length > 0.0 { 1.0 / length } else { 0.0 }
 }
 
-/// −1, 0 or 1. (`f64::signum` gives ±1 for zeros, which would invent a gradient on planes of symmetry.)
+/// −1, 0 or 1. (`f64::signum` is ±1 for zeros, which would create a gradient on planes of
+/// symmetry.)
 #[inline]
 fn sign_or_zero(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }

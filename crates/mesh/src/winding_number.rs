@@ -1,9 +1,11 @@
-//! Generalized winding numbers: how often a surface, open or crossing itself as it may be, goes round a point.
+//! Generalized winding numbers: how often a surface winds around a point. The surface may be open
+//! or intersect itself.
 //!
-//! A. Jacobson, L. Kavan, O. Sorkine-Hornung, *Robust Inside-Outside Segmentation using Generalized Winding Numbers* (2013) for the
-//! definition; G. Barill, N. Dickson, R. Schmidt, D. Levin, A. Jacobson, *Fast Winding Numbers for Soups and Clouds* (2018) for the
-//! sum over clusters. Unlike there, every cluster comes with a bound on the error of its expansion, and clusters are opened until
-//! the bound allows an answer.
+//! Definition: A. Jacobson, L. Kavan, O. Sorkine-Hornung, *Robust Inside-Outside Segmentation using
+//! Generalized Winding Numbers* (2013). Sum over clusters: G. Barill, N. Dickson, R. Schmidt, D.
+//! Levin, A. Jacobson, *Fast Winding Numbers for Soups and Clouds* (2018). In addition to the
+//! paper, every cluster has a bound on the error of its expansion, and clusters are opened until
+//! the total bound is small enough for the query.
 
 #[cfg(test)]
 mod tests;
@@ -16,24 +18,40 @@ use rayon::prelude::*;
 
 use crate::Bvh;
 
-/// Clusters stand for their triangles while radius over distance is below these, tried in order until the error bound is small
-/// enough; zero is the exact sum. The first is the cheapest that decides most points of closed meshes.
+/// Ratios of radius to distance below which a cluster replaces its triangles. They are tried in
+/// order until the error bound is small enough; zero is the exact sum. The first is the cheapest
+/// that decides most points of closed meshes.
 const OPENINGS: [f64; 4] = [0.25, 0.1, 0.03, 0.0];
 
 /// Winding numbers with respect to the triangles of a [`Bvh`].
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use glam::DVec3;
+/// use isochore_mesh::{Bvh, WindingNumber, primitives};
+///
+/// let sphere = primitives::icosphere(1.0, 2);
+/// let bvh = Bvh::new(&sphere.positions, &sphere.triangles)?;
+/// let winding_number = WindingNumber::new(Arc::new(bvh));
+/// assert!((winding_number.at(DVec3::ZERO, 1e-9) - 1.0).abs() < 1e-6);
+/// assert_eq!(winding_number.are_inside(&[DVec3::ZERO, DVec3::ONE]), [true, false]);
+/// # Ok::<(), isochore_mesh::BvhError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct WindingNumber {
     bvh: Arc<Bvh>,
-    /// One a node.
+    /// One per node.
     clusters: Vec<Cluster>,
 }
 
-/// Moments of the triangles below a node, in the unit frame. With area vectors Aₜ (area times normal) and centroids cₜ:
+/// Moments of the triangles below a node, in the unit frame. In the formulas Aₜ is the area vector
+/// of a triangle (area times normal) and cₜ its centroid.
 #[derive(Debug, Clone, Copy)]
 struct Cluster {
     /// Area-weighted mean of cₜ.
     center: DVec3,
-    /// No point of a triangle is farther from the center.
+    /// Upper bound on the distance from the center to any point of a triangle.
     radius: f64,
     /// Σ |Aₜ|
     area: f64,
@@ -44,14 +62,14 @@ struct Cluster {
 }
 
 impl WindingNumber {
-    /// Prepares the clusters.
+    /// Computes the moments of all nodes, bottom-up.
     pub fn new(bvh: Arc<Bvh>) -> Self {
         let mut clusters = vec![Cluster::EMPTY; bvh.nodes().len()];
-        // Children come after their parents.
+        // Children follow their parents.
         for (i, node) in bvh.nodes().iter().enumerate().rev() {
             let parts = if node.is_leaf() {
-                let held = node.first..node.first + node.count;
-                Cluster::join(held.map(|slot| Cluster::of_triangle(&bvh.corners(slot))))
+                let slots = node.first..node.first + node.count;
+                Cluster::join(slots.map(|slot| Cluster::of_triangle(&bvh.corners(slot))))
             } else {
                 let first = node.first as usize;
                 Cluster::join(clusters[first..first + 2].iter().copied())
@@ -64,10 +82,11 @@ impl WindingNumber {
         Self { bvh, clusters }
     }
 
-    /// The winding number of a point, off by no more than `tolerance`: one inside a closed surface, zero outside, two where two
-    /// volumes overlap, a fraction near holes. On the surface itself it jumps, and any value between may come out.
+    /// Returns the winding number of a point with an error of at most `tolerance`: one inside a
+    /// closed surface, zero outside, two where two volumes overlap, a fraction near holes. On the
+    /// surface itself the number jumps, and any value in between may be returned.
     pub fn at(&self, point: DVec3, tolerance: f64) -> f64 {
-        let point = self.bvh.frame().inward(point);
+        let point = self.bvh.frame().to_unit(point);
         self.refine(point, |_, error| error <= tolerance)
     }
 
@@ -78,15 +97,17 @@ impl WindingNumber {
 
     /// Whether the winding number exceeds `threshold`.
     pub(crate) fn exceeds(&self, point: DVec3, threshold: f64) -> bool {
-        let point = self.bvh.frame().inward(point);
+        let point = self.bvh.frame().to_unit(point);
         self.refine(point, |number, error| (number - threshold).abs() > error) > threshold
     }
 
-    /// Whether the winding number is surely below one half either way, at all points within `reach` of `center`.
+    /// Whether the absolute winding number is certainly below one half at all points within `reach`
+    /// of `center`.
     ///
-    /// However a triangle lies, it covers no more of the sphere than its area over its squared distance.
+    /// In any position, a triangle covers at most its area over its squared distance of the unit
+    /// sphere.
     pub(crate) fn is_below_half(&self, center: DVec3, reach: f64) -> bool {
-        let (center, reach) = (self.bvh.frame().inward(center), reach * self.bvh.frame().scale());
+        let (center, reach) = (self.bvh.frame().to_unit(center), reach * self.bvh.frame().scale());
         let gap_to = |middle: DVec3, radius: f64| (middle - center).length() - radius - reach;
         let mut angle = 0.0;
         let mut stack = Vec::with_capacity(self.bvh.stack_capacity());
@@ -107,7 +128,7 @@ impl WindingNumber {
             } else {
                 stack.extend([node.first, node.first + 1]);
             }
-            // Half of the sphere, and a little less for rounding.
+            // Half of the sphere, slightly less to allow for rounding.
             if angle > 1.999 * PI {
                 return false;
             }
@@ -120,12 +141,12 @@ impl WindingNumber {
         &self.bvh
     }
 
-    /// [`is_inside`](Self::is_inside) for many points, in parallel.
+    /// [`is_inside`](Self::is_inside) for many points in parallel.
     pub fn are_inside(&self, points: &[DVec3]) -> Vec<bool> {
         points.par_iter().map(|&point| self.is_inside(point)).collect()
     }
 
-    /// Sums with ever smaller clusters until the sum and its error bound are good enough.
+    /// Opens more clusters until `is_enough` accepts the sum and its error bound.
     fn refine(&self, point: DVec3, is_enough: impl Fn(f64, f64) -> bool) -> f64 {
         let mut number = 0.0;
         for opening in OPENINGS {
@@ -138,7 +159,7 @@ impl WindingNumber {
         number
     }
 
-    /// The sum at a point of the unit frame, and a bound on its error.
+    /// Returns the sum at a point of the unit frame, and a bound on its error.
     fn sum(&self, point: DVec3, opening: f64) -> (f64, f64) {
         let nodes = self.bvh.nodes();
         let (mut angle, mut error) = (0.0, 0.0);
@@ -177,7 +198,7 @@ impl Cluster {
         Self { center: (a + b + c) / 3.0, area: area_vector.length(), area_vector, ..Self::EMPTY }
     }
 
-    /// Moments of all `parts` together; the radius is left to the caller.
+    /// Moments of all `parts` together. The caller sets the radius.
     fn join(parts: impl Iterator<Item = Self> + Clone) -> Self {
         let area: f64 = parts.clone().map(|part| part.area).sum();
         let count = parts.clone().count() as f64;
@@ -193,12 +214,13 @@ impl Cluster {
         })
     }
 
-    /// Solid angle seen from `offset` before the center, by the expansion of the kernel K(r) = r/|r|³ to first order, and a bound
-    /// on its error.
+    /// Solid angle seen from `offset` before the center, with a bound on its error. It is the
+    /// expansion of the kernel K(r) = r/|r|³ to first order.
     ///
-    /// K is minus the gradient of 1/|r|, whose j-th derivative along any unit vectors is at most j!/|r|^(j+1). The j-th term of
-    /// the expansion is therefore at most (j+1) ρʲ/|r|^(j+2) for each unit of area; with x = ρ/|r|, the terms from the second on
-    /// sum to x² (3 − 2x) / (1 − x)² / |r|².
+    /// K is minus the gradient of 1/|r|. The j-th derivative of 1/|r| along any unit vectors is at
+    /// most j!/|r|^(j+1). So the j-th term of the expansion is at most (j+1) ρʲ/|r|^(j+2) per unit
+    /// of area. With x = ρ/|r|, the terms from the second on sum to at most x² (3 − 2x) / (1 − x)²
+    /// / |r|².
     fn solid_angle(&self, offset: DVec3, distance2: f64) -> (f64, f64) {
         let distance = distance2.sqrt();
         let moment = &self.first_moment;
@@ -216,8 +238,8 @@ fn outer(u: DVec3, v: DVec3) -> DMat3 {
     DMat3::from_cols(u * v.x, u * v.y, u * v.z)
 }
 
-/// Signed solid angle of a triangle seen from the origin, positive from behind. A. van Oosterom and J. Strackee, *The Solid Angle
-/// of a Plane Triangle* (1983), equation 8.
+/// Signed solid angle of a triangle seen from the origin, positive from behind (A. van Oosterom and
+/// J. Strackee, *The Solid Angle of a Plane Triangle*, 1983, equation 8).
 fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let (la, lb, lc) = (a.length(), b.length(), c.length());
     let volume = a.dot(b.cross(c));

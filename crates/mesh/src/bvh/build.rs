@@ -1,4 +1,5 @@
-//! The nodes of a hierarchy: groups of triangles along a space-filling curve, and above them what `obvhs` clusters.
+//! Construction of the nodes: groups of triangles along a space-filling curve, clustered by
+//! `obvhs`.
 
 use std::mem::take;
 use std::ops::Range;
@@ -12,50 +13,51 @@ use rayon::prelude::*;
 
 use super::Node;
 use crate::huge_pages::in_huge_pages;
-use crate::morton_order::{Placed, along_morton_curve};
+use crate::morton_order::{MortonKey, along_morton_curve};
 
-/// Neighbors along the curve to each side that a cluster is compared with. Larger: slower. Smaller: boxes overlap more.
+/// Neighbors along the curve, on each side, with which a cluster is compared. Larger: slower.
+/// Smaller: boxes overlap more.
 const NEIGHBORS: usize = 6;
 
-/// Rounds of clustering that compare with only one neighbor, while there are most clusters.
+/// Initial rounds of clustering that compare with only one neighbor, while there are most clusters.
 const QUICK_ROUNDS: usize = 2;
 
-/// Triangles whose leaves one task makes at most. Larger balances worse; smaller is more to hand out.
+/// Maximum number of triangles per task. Larger: worse load balance. Smaller: more scheduling.
 const TASK: usize = 1 << 13;
 
-/// Groups of triangles along the curve.
+/// Groups of adjacent triangles along the curve.
 pub(super) struct Groups {
     /// All triangles in the order of the curve.
-    placed: Vec<Placed>,
-    /// A node for each group.
+    keys: Vec<MortonKey>,
+    /// One node per group.
     leaves: Vec<Bvh2Node>,
 }
 
 impl Groups {
-    /// Groups of up to `at_most` triangles that follow each other.
+    /// Forms groups of up to `at_most` triangles that are adjacent on the curve.
     pub(super) fn new(positions: &[DVec3], triangles: &[[u32; 3]], at_most: u32) -> Self {
         let points: Vec<[f32; 3]> = positions.par_iter().map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect();
-        let placed = along_morton_curve(&points, triangles);
+        let keys = along_morton_curve(&points, triangles);
         let mut pieces = Vec::new();
-        cut_down(&placed, 0..placed.len(), TASK, |piece| pieces.push(piece));
+        cut_down(&keys, 0..keys.len(), TASK, |piece| pieces.push(piece));
         let leaves: Vec<Vec<Bvh2Node>> = (pieces.into_par_iter())
             .map(|piece| {
                 let mut leaves = Vec::with_capacity(piece.len() / 2);
-                cut_down(&placed, piece, at_most as usize, |leaf| {
-                    let aabb = outward_box(&placed[leaf.clone()], &points, triangles);
+                cut_down(&keys, piece, at_most as usize, |leaf| {
+                    let aabb = outward_box(&keys[leaf.clone()], &points, triangles);
                     leaves.push(Bvh2Node::new(aabb, leaf.len() as u32, leaf.start as u32));
                 });
                 leaves
             })
             .collect();
-        Self { placed, leaves: leaves.concat() }
+        Self { keys, leaves: leaves.concat() }
     }
 
-    /// The nodes over one triangle or more, in preorder with children beside each other, and the groups in the order of the leaves.
-    /// One thread does all of it.
+    /// Clusters the groups on a single thread. Returns the nodes in preorder with adjacent
+    /// children, and the groups in the order of the leaves.
     pub(super) fn clustered(&mut self) -> (Vec<Node>, Vec<Range<u32>>) {
         let bounds = self.leaves.iter().fold(Aabb::empty(), |bounds, leaf| bounds.union(leaf.aabb()));
-        // The convenience functions around this one read the clock, which WebAssembly has not.
+        // The convenience functions of `obvhs` read the clock, which WebAssembly does not have.
         let mut builder = PlocBuilder::new();
         builder.current_nodes = take(&mut self.leaves);
         let mut tree = Bvh2::default();
@@ -63,47 +65,49 @@ impl Groups {
         in_preorder(&tree.nodes)
     }
 
-    /// The triangles of these groups.
+    /// Returns the triangles of these groups in order.
     pub(super) fn order(&self, groups: &[Range<u32>]) -> Vec<u32> {
         let pieces: Vec<Vec<u32>> = (groups.par_chunks(TASK))
             .map(|groups| {
-                let placed = groups.iter().flat_map(|group| &self.placed[group.start as usize..group.end as usize]);
-                placed.map(|placed| placed.triangle).collect()
+                let keys = groups.iter().flat_map(|group| &self.keys[group.start as usize..group.end as usize]);
+                keys.map(|key| key.triangle).collect()
             })
             .collect();
         pieces.concat()
     }
 }
 
-/// Cuts a piece of the curve into pieces of at most so many triangles, at the boundaries of its largest cells first.
-fn cut_down(placed: &[Placed], piece: Range<usize>, at_most: usize, mut visit: impl FnMut(Range<usize>)) {
+/// Splits a piece of the curve into pieces of at most `at_most` triangles, at the boundaries of the
+/// largest cells first.
+fn cut_down(keys: &[MortonKey], piece: Range<usize>, at_most: usize, mut visit: impl FnMut(Range<usize>)) {
     let mut pending = vec![piece];
     while let Some(Range { start, end }) = pending.pop() {
         if end - start <= at_most {
             visit(start..end);
         } else {
-            let middle = cut(&placed[start..end]) + start;
+            let middle = cut(&keys[start..end]) + start;
             pending.extend([middle..end, start..middle]);
         }
     }
 }
 
-/// Where the first bit changes in which numbers of cells differ; in the middle where all are alike.
-fn cut(placed: &[Placed]) -> usize {
-    let (first, last) = (placed[0].cell, placed[placed.len() - 1].cell);
+/// Returns the first index at which the highest differing bit of the cell numbers changes; the
+/// midpoint if all numbers are equal.
+fn cut(keys: &[MortonKey]) -> usize {
+    let (first, last) = (keys[0].cell, keys[keys.len() - 1].cell);
     let middle = match (first ^ last).checked_ilog2() {
-        Some(bit) => placed.partition_point(|placed| placed.cell >> bit == first >> bit),
-        None => placed.len() / 2,
+        Some(bit) => keys.partition_point(|key| key.cell >> bit == first >> bit),
+        None => keys.len() / 2,
     };
-    // Numbers within a cell that has a grid of its own are in no relation to those around it.
-    middle.clamp(1, placed.len() - 1)
+    // Numbers within a refined cell are unrelated to those around it.
+    middle.clamp(1, keys.len() - 1)
 }
 
-/// The smallest box that holds these triangles as they were before their corners were rounded to nearest.
-fn outward_box(placed: &[Placed], points: &[[f32; 3]], triangles: &[[u32; 3]]) -> Aabb {
+/// Smallest box that contains these triangles before their corners were rounded to nearest.
+fn outward_box(keys: &[MortonKey], points: &[[f32; 3]], triangles: &[[u32; 3]]) -> Aabb {
     let mut aabb = Aabb::empty();
-    for placed in placed {
-        for vertex in triangles[placed.triangle as usize] {
+    for key in keys {
+        for vertex in triangles[key.triangle as usize] {
             aabb.extend(Vec3A::from_array(points[vertex as usize]));
         }
     }
@@ -113,9 +117,11 @@ fn outward_box(placed: &[Placed], points: &[[f32; 3]], triangles: &[[u32; 3]]) -
     aabb
 }
 
-/// The nodes of a clustering, which has its root first and children behind their parents, cut where few enough triangles for a
-/// leaf remain; and the groups below them in the same order.
+/// Converts a clustering, which has the root first and children after their parents, to nodes in
+/// preorder. A node becomes a leaf if it has few enough triangles. Also returns the groups in the
+/// same order.
 fn in_preorder(tree: &[Bvh2Node]) -> (Vec<Node>, Vec<Range<u32>>) {
+    // Count the triangles below each node, from the last node to the root.
     let mut below: Vec<u32> = tree.iter().map(|node| node.prim_count).collect();
     for (index, node) in tree.iter().enumerate().rev() {
         if !node.is_leaf() {
@@ -132,11 +138,13 @@ fn in_preorder(tree: &[Bvh2Node]) -> (Vec<Node>, Vec<Range<u32>>) {
     nodes.push(node(0));
     let mut pending = vec![(0, 0)];
     let mut leaf = Vec::new();
-    while let Some((source, place)) = pending.pop() {
+    while let Some((source, target)) = pending.pop() {
         let children = tree[source as usize].first_index;
-        if nodes[place].is_leaf() {
-            nodes[place].first = slot;
-            slot += nodes[place].count;
+        if nodes[target].is_leaf() {
+            nodes[target].first = slot;
+            slot += nodes[target].count;
+            // A leaf collects all groups below it, which may be spread over several nodes of the
+            // clustering.
             leaf.push(source);
             while let Some(part) = leaf.pop() {
                 let Bvh2Node { first_index: first, prim_count: count, .. } = tree[part as usize];
@@ -148,7 +156,7 @@ fn in_preorder(tree: &[Bvh2Node]) -> (Vec<Node>, Vec<Range<u32>>) {
             }
         } else {
             let first = nodes.len();
-            nodes[place].first = first as u32;
+            nodes[target].first = first as u32;
             nodes.extend([node(children), node(children + 1)]);
             pending.extend([(children + 1, first + 1), (children, first)]);
         }

@@ -23,7 +23,7 @@ fn point(reach: f64) -> impl Strategy<Value = DVec3> {
 
 proptest! {
     #[test]
-    fn agrees_with_another_library(p in point(2.0), offset in prop::sample::select(vec![0.0, 1e5])) {
+    fn closest_point_agrees_with_parry(p in point(2.0), offset in prop::sample::select(vec![0.0, 1e5])) {
         let mut mesh = icosphere(1.0, 2);
         for (i, position) in mesh.positions.iter_mut().enumerate() {
             *position = *position * (1.0 + 0.3 * (i as f64 * 0.618_034).fract()) + offset;
@@ -32,12 +32,12 @@ proptest! {
         let found = bvh(&mesh).closest_point(p);
         let other = parry(&mesh).project_local_point(Vector::new(p.x, p.y, p.z), false).point;
         let expected = p.distance(dvec3(other.x, other.y, other.z));
-        // Both round coordinates of size `offset` a few times.
+        // Both implementations round coordinates of size `offset` a few times.
         let error = 1e-15 * (4.0 + 16.0 * offset);
         prop_assert!((found.distance - expected).abs() < error, "{} {expected}", found.distance);
         prop_assert!((p.distance(found.point) - found.distance).abs() < error);
 
-        // The feature is where the point is.
+        // The feature contains the point.
         let corners = mesh.corners(found.triangle as usize);
         match found.feature {
             Feature::Face => {
@@ -56,9 +56,9 @@ proptest! {
     }
 
     #[test]
-    fn guess_changes_nothing(p in point(3.0), guess in 0..320_u32) {
+    fn guess_does_not_change_the_distance(p in point(3.0), guess in 0..320_u32) {
         let bvh = bvh(&icosphere(1.0, 2));
-        let p = bvh.frame().inward(p);
+        let p = bvh.frame().to_unit(p);
         prop_assert_eq!(bvh.nearest(p, None).squared, bvh.nearest(p, Some(guess)).squared);
     }
 }
@@ -81,7 +81,7 @@ fn slivers_and_triangles_without_area_are_found() {
             let bvh = Bvh::new(&[a, b, third], &[[0, 1, 2]]).unwrap();
             for p in [dvec3(0.2, -1.0, 0.5), dvec3(0.2, 0.5 * height, 1.0), dvec3(0.31, 2.0, -0.1)] {
                 let found = bvh.closest_point(p);
-                // The triangle is within its height of a piece of the x axis.
+                // The triangle is within its height of a segment of the x axis.
                 let on_axis = p.x.clamp(-1.0, third.x.max(1.0));
                 let expected = p.distance(dvec3(on_axis, 0.0, 0.0));
                 assert!((found.distance - expected).abs() <= 1e-14 + height, "height {height} at {p}: {found:?}");

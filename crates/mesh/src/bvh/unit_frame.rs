@@ -2,24 +2,26 @@ use glam::DVec3;
 
 use crate::Aabb;
 
-/// A frame in which a mesh fills the cube from −1 to 1: its center at the origin, its longest side between 1 and 2.
+/// A frame in which a mesh fills the cube from −1 to 1. The center of its bounding box is the
+/// origin, and its longest side is between 1 and 2.
 ///
-/// Only there may coordinates be rounded to `f32`: far from the origin of model space that would cost all precision. The scale
-/// is a power of two, so that scaling is exact.
+/// In this frame, coordinates may be rounded to `f32`. In model space, far from the origin, that
+/// would lose all precision. The scale is a power of two, so scaling is exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct UnitFrame {
     center: DVec3,
     scale: f64,
 }
 
+#[expect(clippy::wrong_self_convention, reason = "the frame is named first, then the conversion of a point")]
 impl UnitFrame {
-    /// The frame around what these bounds hold.
+    /// The frame of a bounding box.
     pub(crate) fn around(aabb: Aabb) -> Self {
-        // Halves first: the sum and the difference of huge coordinates could overflow.
+        // Half coordinates, because the sum or the difference of huge coordinates could overflow.
         let (min, max) = (0.5 * aabb.min, 0.5 * aabb.max);
         let half = (max - min).max_element();
         let scale = if half > 0.0 {
-            // A smaller exponent than that of the smallest normal number would make the scale infinite.
+            // An exponent below that of the smallest normal number would make the scale infinite.
             libm::ldexp(1.0, -libm::frexp(half).1.max(-1000))
         } else {
             1.0
@@ -27,17 +29,17 @@ impl UnitFrame {
         Self { center: min + max, scale }
     }
 
-    /// From model space into the frame.
-    pub(crate) fn inward(&self, point: DVec3) -> DVec3 {
+    /// Maps a point from model space to the unit frame.
+    pub(crate) fn to_unit(&self, point: DVec3) -> DVec3 {
         (point - self.center) * self.scale
     }
 
-    /// From the frame into model space.
-    pub(crate) fn outward(&self, point: DVec3) -> DVec3 {
+    /// Maps a point from the unit frame to model space.
+    pub(crate) fn from_unit(&self, point: DVec3) -> DVec3 {
         point / self.scale + self.center
     }
 
-    /// A length in the frame over the same length in model space.
+    /// Factor from lengths in model space to lengths in the unit frame.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }

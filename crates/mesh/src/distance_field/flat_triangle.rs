@@ -1,8 +1,8 @@
-use super::packet::{LANES, Packet};
-use super::vector::{Lanes3, at, cross, direction, dot, minus, perpendicular, select, square};
-use crate::extremes::{greater, lesser};
+use super::lanes::{LANES, Lanes3, at, cross, direction, dot, minus, perpendicular, select, square};
+use super::packet::Packet;
+use crate::extremes::{max, min};
 
-/// A triangle in its own plane: corners at (0, 0), (`base`, 0) and `left_length` · `left`.
+/// A triangle in its own plane, with corners at (0, 0), (`base`, 0) and `left_length` · `left`.
 #[derive(Debug, Clone, Copy, bytemuck::Zeroable)]
 pub(super) struct FlatTriangle {
     origin: [f32; 3],
@@ -19,8 +19,9 @@ pub(super) struct FlatTriangle {
 }
 
 impl FlatTriangle {
-    /// Puts the longest edge of each triangle along the first axis, which keeps slivers well-conditioned. A triangle without area
-    /// lies in any plane through its longest edge.
+    /// Sets up one triangle per lane, with the longest edge of each along the first axis. This
+    /// keeps slivers well-conditioned. A triangle without area gets any plane through its longest
+    /// edge.
     #[inline(always)]
     pub(super) fn set_each(triangles: &mut [Self], corners: &[Lanes3; 3]) {
         let [mut base, mut right_length, mut left_length] = [[0.0; LANES]; 3];
@@ -29,17 +30,19 @@ impl FlatTriangle {
         for i in 0..LANES {
             let (p, q, r) = (at(&corners[0], i), at(&corners[1], i), at(&corners[2], i));
             let (pq, qr, rp) = (square(minus(q, p)), square(minus(r, q)), square(minus(p, r)));
+            // Rotate the corners cyclically so that the edge from a to b is the longest.
             let is_first = (pq >= qr) & (pq >= rp);
             let is_second = qr >= rp;
             let a = select(is_first, p, select(is_second, q, r));
             let b = select(is_first, q, select(is_second, r, p));
             let c = select(is_first, r, select(is_second, p, q));
+            // Axes of the plane: along the base, and across it toward the apex.
             let (along, length) = direction(minus(b, a), [1.0, 0.0, 0.0]);
             let to_apex = minus(c, a);
             let u = dot(along, to_apex);
             let across = perpendicular(along, to_apex);
             let apex = [u, dot(across, to_apex), 0.0];
-            // An edge without length may have any direction, but must have one.
+            // An edge of length zero may have any direction.
             let (right, right_size) = direction([apex[0] - length, apex[1], 0.0], [1.0, 0.0, 0.0]);
             let (left, left_size) = direction(apex, [1.0, 0.0, 0.0]);
             let normal = cross(along, across);
@@ -72,19 +75,23 @@ impl FlatTriangle {
         }
     }
 
-    /// Takes the triangle, number `slot`, for the lanes where it is nearer than what they have.
+    /// Assigns the triangle, number `slot`, to the lanes for which it is nearer than their current
+    /// one.
     ///
-    /// Several loops without branches: with a comparison in the first, the compiler either makes no vector code of it, or
-    /// loads what only one side of the comparison needs lane by lane.
+    /// The loops have no branches and are separate. With a comparison in the first loop, the
+    /// compiler either does not vectorize it, or loads the operands of one branch lane by lane.
     #[inline(always)]
     pub(super) fn update(&self, packet: &mut Packet, slot: u32) {
         let [mut above, mut to_border, mut inside] = [[0.0; LANES]; 3];
         for i in 0..LANES {
+            // Coordinates in the frame of the triangle: along the base, across it, and height above
+            // the plane.
             let (x, y, z) = (packet.x[i] - self.origin[0], packet.y[i] - self.origin[1], packet.z[i] - self.origin[2]);
             let u = x * self.along[0] + y * self.along[1] + z * self.along[2];
             let v = x * self.across[0] + y * self.across[1] + z * self.across[2];
             let w = x * self.normal[0] + y * self.normal[1] + z * self.normal[2];
 
+            // Squared distances within the plane to the three edges, each clamped to its length.
             let past_base = u - clamp(u, self.base);
             let to_base = past_base * past_base + v * v;
 
@@ -100,8 +107,8 @@ impl FlatTriangle {
             let to_left = past_left * past_left + from_left * from_left;
 
             above[i] = w * w;
-            to_border[i] = lesser(to_base, lesser(to_right, to_left));
-            inside[i] = lesser(v, lesser(from_right, from_left));
+            to_border[i] = min(to_base, min(to_right, to_left));
+            inside[i] = min(v, min(from_right, from_left));
         }
         let mut squared = [0.0; LANES];
         for i in 0..LANES {
@@ -109,13 +116,13 @@ impl FlatTriangle {
         }
         for i in 0..LANES {
             packet.slot[i] = if squared[i] < packet.squared[i] { slot } else { packet.slot[i] };
-            packet.squared[i] = lesser(squared[i], packet.squared[i]);
+            packet.squared[i] = min(squared[i], packet.squared[i]);
         }
     }
 }
 
-/// `x` clamped to the range from zero to `limit`.
+/// Clamps `x` to the range from zero to `limit`.
 #[inline(always)]
 fn clamp(x: f32, limit: f32) -> f32 {
-    lesser(greater(x, 0.0), limit)
+    min(max(x, 0.0), limit)
 }

@@ -3,7 +3,17 @@ use glam::DVec3;
 use super::{DistanceFieldError, Padding};
 use crate::Aabb;
 
-/// Nodes of a regular grid: node (i, j, k) lies at `origin + cell · (i, j, k)`.
+/// Nodes of a regular grid. Node (i, j, k) is at `origin + cell · (i, j, k)`.
+///
+/// ```
+/// use glam::{DVec3, dvec3};
+/// use isochore_mesh::Grid;
+///
+/// let grid = Grid { origin: DVec3::ZERO, cell: 0.5, dims: [3, 3, 5] };
+/// assert_eq!(grid.len(), 45);
+/// assert_eq!(grid.node(2, 0, 4), dvec3(1.0, 0.0, 2.0));
+/// assert_eq!(grid.node_at(44), grid.bounds().max);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     /// Position of the first node, model units.
@@ -14,11 +24,12 @@ pub struct Grid {
     pub dims: [usize; 3],
 }
 
-/// Fewest cells on the longest side of the mesh. Fewer say nothing about a shape.
+/// Smallest number of cells along the longest side of the mesh. Fewer cannot represent a shape.
 const LEAST_RESOLUTION: usize = 4;
 
 impl Grid {
-    /// A grid centered on `bounds`, with `resolution` cells on its longest side, and padding around it.
+    /// Creates a grid centered on `bounds`, with `resolution` cells along its longest side, plus
+    /// padding.
     pub(super) fn around(bounds: Aabb, resolution: usize, padding: Padding) -> Result<Self, DistanceFieldError> {
         if resolution < LEAST_RESOLUTION {
             return Err(DistanceFieldError::Resolution { resolution, least: LEAST_RESOLUTION });
@@ -37,20 +48,21 @@ impl Grid {
         }
         let padding_cells = (length / cell).ceil() + extra;
         let dims = (bounds.size() / cell).to_array().map(|cells| {
-            // A whole number of cells that rounding made a little more is that whole number.
+            // If rounding made a whole number of cells slightly larger, it still counts as that
+            // number.
             (cells - ROUNDING_CELLS).ceil().max(0.0) + 2.0 * padding_cells + 1.0
         });
         let origin = bounds.center() - 0.5 * cell * (DVec3::from_array(dims) - 1.0);
-        // A float to integer cast saturates; the memory limit sees to the rest.
+        // The cast from float to integer saturates. The memory limit rejects such grids.
         Ok(Self { origin, cell, dims: dims.map(|nodes| nodes as usize) })
     }
 
-    /// Number of nodes; `usize::MAX` where that overflows.
+    /// Number of nodes; `usize::MAX` on overflow.
     pub fn len(&self) -> usize {
         self.dims.iter().fold(1, |product: usize, &nodes| product.saturating_mul(nodes))
     }
 
-    /// Whether there are no nodes.
+    /// Whether the grid has no nodes.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -60,23 +72,25 @@ impl Grid {
         self.origin + self.cell * DVec3::new(i as f64, j as f64, k as f64)
     }
 
-    /// Position of a node by its index in [z, y, x] order.
+    /// Position of a node, given by its index in [z, y, x] order.
     pub fn node_at(&self, index: usize) -> DVec3 {
         let [nx, ny, _] = self.dims;
         self.node(index % nx, index / nx % ny, index / (nx * ny))
     }
 
-    /// The box that the nodes span.
+    /// The box spanned by the nodes.
     pub fn bounds(&self) -> Aabb {
         let [nx, ny, nz] = self.dims;
         Aabb { min: self.origin, max: self.node(nx - 1, ny - 1, nz - 1) }
     }
 }
 
-/// Cells that the reach is padded by: one, because the outermost cells lack a neighbor that the cubic spline needs, and one more,
-/// so that at the end of the reach a point has not yet left the cells that have all.
+/// Cells added to the reach. One, because the outermost cells lack a neighbor that the cubic spline
+/// needs. One more, so that a point at the end of the reach is still in a cell that has all
+/// neighbors.
 const STENCIL_CELLS: f64 = 2.0;
 
-/// Part of a cell that a side of the mesh may exceed a whole number of cells by before it gets another. Larger: padding could be
-/// short by it. Smaller than 1e-12: rounding would add a cell now and then.
+/// Fraction of a cell by which a side of the mesh may exceed a whole number of cells without
+/// getting another cell. Larger: padding could be short by this fraction. Smaller than 1e-12:
+/// rounding would sometimes add a cell.
 const ROUNDING_CELLS: f64 = 1e-9;

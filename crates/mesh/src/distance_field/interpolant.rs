@@ -11,24 +11,26 @@ use super::Grid;
 use super::lipschitz::lipschitz;
 use super::spline::coefficients;
 use crate::{Cancelled, DistanceBlock, Monitor, PointBlock};
-use kernel::{Frame, Lattice};
+use kernel::{GridGeometry, Lattice};
 
 /// The cubic spline through the samples of a grid.
 #[derive(Debug, Clone)]
 pub(super) struct Interpolant {
-    /// None where no cell has all its neighbors.
-    frame: Option<Frame>,
+    /// `None` if no cell has all its neighbors.
+    geometry: Option<GridGeometry>,
     coefficients: Vec<f32>,
     lipschitz: f64,
-    /// No two coefficients of a stencil differ by more.
+    /// Upper bound on the difference between two coefficients of a stencil.
     spread: f64,
 }
 
-/// Bound on the rounding of values in `f32` lanes, as a share of what the coefficients around the point differ by.
+/// Bound on the rounding error of values in `f32` lanes, relative to the spread of the coefficients
+/// around the point.
 ///
-/// Roundings of u = 2⁻²⁴ move the four weights along an axis by 17u together; each of three sums of products, of which the first
-/// is over rounded differences, adds 5u or 4u: 3 · 17u + 5u + 4u + 4u, and a little for what is of second order. Smaller: points
-/// could be woken too late. Larger: they are woken needlessly early.
+/// Rounding by u = 2⁻²⁴ moves the four weights along an axis by 17u in total. Each of three sums of
+/// products adds 5u or 4u; the first sum is over rounded differences. In total this is 3 · 17u + 5u
+/// + 4u + 4u, and a little for second-order terms. Smaller: points could be woken too late. Larger:
+/// they are woken needlessly early.
 const VALUE_ROUNDING: f64 = 65.0 / (1 << 24) as f64;
 
 impl Interpolant {
@@ -38,14 +40,14 @@ impl Interpolant {
         monitor.check("spline", 0.5)?;
         let lipschitz = lipschitz(grid, &coefficients, monitor)?;
         let spread = f64::from(largest_difference(&coefficients, grid.dims)) * STENCIL_STEPS;
-        Ok(Self { frame: Frame::new(grid), coefficients, lipschitz, spread })
+        Ok(Self { geometry: GridGeometry::new(grid), coefficients, lipschitz, spread })
     }
 
     pub(super) fn lipschitz(&self) -> f64 {
         self.lipschitz
     }
 
-    /// Values and gradients to the last digits of `f64`.
+    /// Computes values and gradients in double precision.
     pub(super) fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
         match self.lattice() {
             Some(lattice) => sample_double(&lattice, points, out),
@@ -58,7 +60,7 @@ impl Interpolant {
         VALUE_ROUNDING * self.spread
     }
 
-    /// The same in `f32` lanes.
+    /// Computes values and gradients in `f32` lanes.
     pub(super) fn sample_single_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
         match self.lattice() {
             Some(lattice) => sample_single(&lattice, points, out),
@@ -68,14 +70,14 @@ impl Interpolant {
 
     #[inline]
     fn lattice(&self) -> Option<Lattice<'_>> {
-        self.frame.as_ref().map(|frame| Lattice { frame, coefficients: &self.coefficients })
+        self.geometry.as_ref().map(|geometry| Lattice { geometry, coefficients: &self.coefficients })
     }
 }
 
-/// Steps along axes from one end of a stencil to the other.
+/// Steps along the axes from one corner of a stencil to the opposite one.
 const STENCIL_STEPS: f64 = 9.0;
 
-/// The largest difference of coefficients that are neighbors along an axis.
+/// Returns the largest difference between coefficients that are neighbors along an axis.
 fn largest_difference(coefficients: &[f32], [nx, ny, _]: [usize; 3]) -> f32 {
     let largest = |one: &[f32], other: &[f32]| {
         one.iter()

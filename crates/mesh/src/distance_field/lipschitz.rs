@@ -1,10 +1,12 @@
-//! A bound on the slope of a tricubic B-spline.
+//! An upper bound on the slope of a tricubic B-spline.
 //!
-//! In Bézier form a polynomial lies in the convex hull of its control values, and the control values of its derivative along an axis
-//! are three times the differences of its own along that axis. Raised to the same degree along all axes, the three derivatives have
-//! control *vectors*, none of which the gradient can exceed in length. Halving a cell leaves a quarter of the slack.
+//! A polynomial in Bézier form is in the convex hull of its control values. The control values of
+//! its derivative along an axis are three times the differences of its own along that axis. With
+//! all three derivatives raised to the same degree, the gradient has control *vectors*, and it is
+//! not longer than the longest of them. Halving a cell reduces the slack to a quarter.
 //!
-//! All cells are bounded in `f32`, some of a row at once; then those that may be the steepest are halved.
+//! All cells are bounded in `f32`, several of a row at once. Then those that may be steepest are
+//! halved and bounded in `f64`.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -13,17 +15,19 @@ use rayon::prelude::*;
 
 use super::Grid;
 use super::real::Real;
-use crate::extremes::{greater, lesser};
+use crate::extremes::{max, min};
 use crate::huge_pages::in_huge_pages;
 use crate::{Cancelled, Monitor};
 
 /// Covers the rounding of the arithmetic in `f64`.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-/// Bound on the rounding of the length of a gradient in `f32` lanes, over the greatest difference of two coefficients of the cell.
+/// Bound on the rounding error of the length of a gradient in `f32` lanes, relative to the largest
+/// difference between two coefficients of the cell.
 ///
-/// With u = 2⁻²⁴: a control value is off by 13u, by the difference from the base and three conversions of 4u; a slope by six times
-/// that and 7u of its own; the length by √3 times that. Smaller: the steepest cell could be missed. Larger: more cells are halved.
+/// Let u = 2⁻²⁴. A control value is off by 13u: the difference from the base, and three conversions
+/// of 4u each. A slope is off by six times that plus 7u, and the length by √3 times as much.
+/// Smaller: the steepest cell could be missed. Larger: more cells are halved.
 const SLOPE_ROUNDING: f32 = 160.0 / (1 << 24) as f32;
 
 /// Cells of a row that are bounded at once.
@@ -32,7 +36,8 @@ const LANES: usize = 16;
 /// Control values of `N` cells, [z][y][x].
 type Control<T, const N: usize> = [[[[T; N]; 4]; 4]; 4];
 
-/// Upper bound on the length of the gradient in all cells that have all neighbors and where the spline may be positive.
+/// Upper bound on the length of the gradient in all cells that have all neighbors and in which the
+/// spline may be positive.
 pub(super) fn lipschitz(grid: &Grid, coefficients: &[f32], monitor: &dyn Monitor) -> Result<f64, Cancelled> {
     let [nx, ny, nz] = grid.dims;
     if nx < 4 || ny < 4 || nz < 4 {
@@ -40,8 +45,9 @@ pub(super) fn lipschitz(grid: &Grid, coefficients: &[f32], monitor: &dyn Monitor
     }
     let layer = nx * ny;
     let mut bounds = in_huge_pages(vec![0.0; layer * (nz - 3)]);
-    // The greatest found so far, as bits, which of positive numbers have the order of the numbers. What threads find when decides
-    // what they skip, but nothing that they skip is greater than what is found in the end.
+    // The largest bound found so far, as bits; bits of positive numbers are ordered like the
+    // numbers. The timing of threads decides which cells are skipped, but a skipped cell never
+    // exceeds the final maximum.
     let known = AtomicU64::new(0);
     let refine = |cell: usize| {
         known.fetch_max(halved_bound(&coefficients[cell..], nx, layer).to_bits(), Relaxed);
@@ -59,8 +65,9 @@ pub(super) fn lipschitz(grid: &Grid, coefficients: &[f32], monitor: &dyn Monitor
     Ok(f64::from_bits(known.into_inner()).sqrt() / grid.cell * ROUNDING)
 }
 
-/// Sets squared bounds on the gradient in the cells of a layer, zero where the spline is not positive; the first coefficient of the
-/// layer is the first of these. Gives the cell with the greatest bound.
+/// Sets squared bounds on the gradient in the cells of a layer; zero where the spline is not
+/// positive. `coefficients` begins with the first coefficient of the layer. Returns the cell with
+/// the largest bound.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
 fn bound_layer(coefficients: &[f32], nx: usize, bounds: &mut [f32]) -> usize {
     let layer = bounds.len();
@@ -72,14 +79,14 @@ fn bound_layer(coefficients: &[f32], nx: usize, bounds: &mut [f32]) -> usize {
             let found = if count == LANES + 3 {
                 bound_cells(&std::array::from_fn(|number| line(number).first_chunk().expect("as many")), greatest)
             } else {
-                // Past the end of the row, the last coefficient is repeated.
+                // Repeat the last coefficient past the end of the row.
                 let ended: [[f32; LANES + 3]; 16] =
                     std::array::from_fn(|number| std::array::from_fn(|i| line(number)[i.min(count - 1)]));
                 bound_cells(&ended.each_ref(), greatest)
             };
             let cells = count - 3;
             bounds[row + first..][..cells].copy_from_slice(&found[..cells]);
-            let largest = found.iter().fold(0.0, |largest, &bound| greater(largest, bound));
+            let largest = found.iter().fold(0.0, |largest, &bound| max(largest, bound));
             if largest > greatest {
                 let cell = found[..cells].iter().position(|&bound| bound == largest);
                 cell.inspect(|cell| (steepest, greatest) = (row + first + cell, largest));
@@ -89,18 +96,19 @@ fn bound_layer(coefficients: &[f32], nx: usize, bounds: &mut [f32]) -> usize {
     steepest
 }
 
-/// Squared bounds for the cells that 16 lines of coefficients pass by, in layers of four. Bounds not above `known` need not be close.
+/// Squared bounds for the cells along 16 lines of coefficients, four lines for each of four layers.
+/// Bounds that do not exceed `known` need not be tight.
 #[inline(always)]
 fn bound_cells(lines: &[&[f32; LANES + 3]; 16], known: f32) -> [f32; LANES] {
-    // Least and greatest of the columns, in two parts that overlap, each as long as a vector.
+    // Minima and maxima of the columns, in two overlapping parts, each as long as a vector.
     let parts = [0, 3].map(|column| *from_column(lines[0], column));
     let (mut least, mut greatest) = (parts, parts);
     for line in &lines[1..] {
         for (part, column) in [0, 3].into_iter().enumerate() {
             let values = from_column(line, column);
             for i in 0..LANES {
-                least[part][i] = lesser(least[part][i], values[i]);
-                greatest[part][i] = greater(greatest[part][i], values[i]);
+                least[part][i] = min(least[part][i], values[i]);
+                greatest[part][i] = max(greatest[part][i], values[i]);
             }
         }
     }
@@ -115,16 +123,16 @@ fn bound_cells(lines: &[&[f32; LANES + 3]; 16], known: f32) -> [f32; LANES] {
     let [g0, g1, g2, g3] = [0, 1, 2, 3].map(|column| from_column(&greatest, column));
     let (mut ranges, mut bounds) = ([0.0; LANES], [0.0; LANES]);
     for i in 0..LANES {
-        let least = lesser(lesser(l0[i], l1[i]), lesser(l2[i], l3[i]));
-        let greatest = greater(greater(g0[i], g1[i]), greater(g2[i], g3[i]));
+        let least = min(min(l0[i], l1[i]), min(l2[i], l3[i]));
+        let greatest = max(max(g0[i], g1[i]), max(g2[i], g3[i]));
         ranges[i] = if greatest > 0.0 { greatest - least } else { 0.0 };
-        // No slope along an axis exceeds the range.
+        // The slope along an axis cannot exceed the range.
         bounds[i] = 3.0 * ranges[i] * ranges[i] * (1.0 + SLOPE_ROUNDING);
     }
     if bounds.iter().all(|&bound| bound <= known) {
         return bounds;
     }
-    // Differences of near numbers lose nothing.
+    // Differences of similar numbers are exact or nearly so.
     let base = from_column(lines[5], 1);
     let mut control = [[[[0.0; LANES]; 4]; 4]; 4];
     for (control, line) in control.as_flattened_mut().iter_mut().zip(lines) {
@@ -143,14 +151,14 @@ fn bound_cells(lines: &[&[f32; LANES + 3]; 16], known: f32) -> [f32; LANES] {
     bounds
 }
 
-/// The columns of a line that begin with this one.
+/// Returns the columns of a line from `column` on.
 #[inline(always)]
 fn from_column(line: &[f32; LANES + 3], column: usize) -> &[f32; LANES] {
     line[column..].first_chunk().expect("a column of the first cell")
 }
 
-/// The squared bound in the cell whose first coefficient is the first of these: the greatest of those in its eight halves along all
-/// axes, zero where the spline is not positive.
+/// Squared bound in the cell that begins with the first of these coefficients: the maximum over its
+/// eight octants. Zero where the spline is not positive.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
 fn halved_bound(coefficients: &[f32], row: usize, layer: usize) -> f64 {
     let mut control = [[[[0.0; 8]; 4]; 4]; 4];
@@ -164,15 +172,16 @@ fn halved_bound(coefficients: &[f32], row: usize, layer: usize) -> f64 {
     let mut greatest = [f64::NEG_INFINITY; 8];
     for values in halves.as_flattened().as_flattened() {
         for i in 0..8 {
-            greatest[i] = greater(greatest[i], values[i]);
+            greatest[i] = max(greatest[i], values[i]);
         }
     }
-    // A half is half as long as the cell, and so are the differences of its control values.
+    // An octant is half as long as the cell. Its control values differ by half as much, hence the
+    // factor 2² = 4.
     let slopes = squared_slopes(&halves);
-    (0..8).fold(0.0, |bound, i| if greatest[i] > 0.0 { greater(bound, 4.0 * slopes[i]) } else { bound })
+    (0..8).fold(0.0, |bound, i| if greatest[i] > 0.0 { max(bound, 4.0 * slopes[i]) } else { bound })
 }
 
-/// For each lane the largest squared length of a control vector of the gradient.
+/// The largest squared length of a control vector of the gradient, for each lane.
 #[inline(always)]
 fn squared_slopes<T: Real, const N: usize>(control: &Control<T, N>) -> [T; N] {
     let [two, three, third] = [2.0, 3.0, 1.0 / 3.0].map(T::of);
@@ -190,7 +199,7 @@ fn squared_slopes<T: Real, const N: usize>(control: &Control<T, N>) -> [T; N] {
                 let (x, y, z) = (&x[k][j][i], &y[k][j][i], &z[k][j][i]);
                 for lane in 0..N {
                     let squared = x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane];
-                    largest[lane] = greater(largest[lane], squared);
+                    largest[lane] = max(largest[lane], squared);
                 }
             }
         }
@@ -198,7 +207,7 @@ fn squared_slopes<T: Real, const N: usize>(control: &Control<T, N>) -> [T; N] {
     largest
 }
 
-/// The Bézier form of cells with these coefficients.
+/// Converts B-spline coefficients of cells to Bézier form.
 #[inline(always)]
 fn to_bezier<T: Real, const N: usize>(control: &Control<T, N>) -> Control<T, N> {
     let [two, four, third, sixth] = [2.0, 4.0, 1.0 / 3.0, 1.0 / 6.0].map(T::of);
@@ -208,7 +217,8 @@ fn to_bezier<T: Real, const N: usize>(control: &Control<T, N>) -> Control<T, N> 
     along::<T, N, 2>(&along::<T, N, 1>(&along::<T, N, 0>(control, convert), convert), convert)
 }
 
-/// Halves along an axis by de Casteljau's construction: in lanes whose number has the bit of the axis the upper half, else the lower.
+/// Halves cells along an axis by de Casteljau's construction. A lane gets the upper half if its
+/// number has the bit of the axis set, and the lower half otherwise.
 #[inline(always)]
 fn half<const AXIS: usize>(control: &Control<f64, 8>) -> Control<f64, 8> {
     along::<f64, 8, AXIS>(control, |lane, [a, b, c, d]| {
@@ -219,7 +229,8 @@ fn half<const AXIS: usize>(control: &Control<f64, 8>) -> Control<f64, 8> {
     })
 }
 
-/// Applies `map` to all lines of control values along an axis, 0 for x; it is told the lane.
+/// Applies `map` to all lines of control values along an axis (0 for x). Its first argument is the
+/// lane.
 #[inline(always)]
 fn along<T: Real, const N: usize, const AXIS: usize>(
     control: &Control<T, N>,

@@ -1,45 +1,47 @@
-//! Boxes along the surface that they hold, which prune far more than boxes along the axes.
+//! Boxes aligned to the surface that they enclose. They prune far more than axis-aligned boxes.
 //!
-//! From afar a surface is a thin shell. A box along the axes around a piece of it is as thick as the piece is wide times the sine
-//! of its tilt, and so many pieces look nearer than the nearest point; a box along the piece is only as thick as the piece is bent.
+//! From afar, a piece of a surface is a thin plate. The thickness of an axis-aligned box around it
+//! is the width of the piece times the sine of its tilt, so many pieces appear nearer than the
+//! nearest point. The thickness of an aligned box depends only on how much the piece bends.
 
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::packet::{LANES, Lanes, Packet};
-use super::vector::{cross, direction, perpendicular};
+use super::lanes::{LANES, Lanes, cross, direction, perpendicular};
+use super::packet::Packet;
 use crate::bvh::{LEAF_TRIANGLES, Node};
-use crate::extremes::greater;
+use crate::extremes::max;
 
-/// A box in any orientation, ready for distances to a packet of points.
+/// An oriented box in `f32`, prepared for distances to a packet of points.
 #[derive(Debug, Clone, Copy, bytemuck::Zeroable)]
 #[repr(align(64))]
-pub(super) struct OrientedBox {
+pub(super) struct PackedBox {
     axes: [[f32; 3]; 3],
     /// Coordinates of the center along the axes.
     middle: [f32; 3],
     half: [f32; 3],
-    /// What it holds: eight times the number of its first child or triangle, plus the number of triangles, zero for an inner node.
-    held: u32,
+    /// Eight times the index of the first child or triangle, plus the number of triangles (zero for
+    /// an inner node).
+    contents: u32,
 }
 
-const _: () = assert!(LEAF_TRIANGLES < 8 && size_of::<OrientedBox>() == 64, "three bits, and a line of the cache");
+const _: () = assert!(LEAF_TRIANGLES < 8 && size_of::<PackedBox>() == 64, "three bits, and a line of the cache");
 
-impl OrientedBox {
-    /// The first of both children, if it has any.
+impl PackedBox {
+    /// The first of the two children; `None` for a leaf.
     #[inline(always)]
     pub(super) fn children(&self) -> Option<usize> {
-        self.held.is_multiple_of(8).then_some(self.held as usize / 8)
+        self.contents.is_multiple_of(8).then_some(self.contents as usize / 8)
     }
 
     /// The triangles of a leaf.
     #[inline(always)]
     pub(super) fn triangles(&self) -> Range<u32> {
-        self.held / 8..self.held / 8 + self.held % 8
+        self.contents / 8..self.contents / 8 + self.contents % 8
     }
 
-    /// Squared distances to the points.
+    /// Squared distances from the points to the box.
     #[inline(always)]
     pub(super) fn squared_distances(&self, packet: &Packet) -> Lanes {
         let mut squared = [0.0; LANES];
@@ -47,7 +49,7 @@ impl OrientedBox {
             let beyond = |axis: usize| {
                 let [a, b, c] = self.axes[axis];
                 let along = packet.x[i] * a + packet.y[i] * b + packet.z[i] * c;
-                greater((along - self.middle[axis]).abs() - self.half[axis], 0.0)
+                max((along - self.middle[axis]).abs() - self.half[axis], 0.0)
             };
             let [u, v, w] = [beyond(0), beyond(1), beyond(2)];
             squared[i] = u * u + v * v + w * w;
@@ -56,17 +58,17 @@ impl OrientedBox {
     }
 }
 
-/// A box in any orientation, in full precision.
+/// An oriented bounding box in double precision.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shell {
+pub(super) struct OrientedBox {
     pub(super) axes: DMat3,
-    /// Least and greatest coordinates along the axes.
+    /// Smallest and largest coordinates along the axes.
     pub(super) min: DVec3,
     pub(super) max: DVec3,
 }
 
-impl Shell {
-    /// Holds nothing yet; the first of its axes is across a piece of the surface, the second along it.
+impl OrientedBox {
+    /// Creates an empty box. Its first axis is across a piece of the surface, its second along it.
     pub(super) fn across_and_along(normal: DVec3, tangent: DVec3) -> Self {
         let (across, _) = direction(normal.to_array(), [1.0, 0.0, 0.0]);
         let along = perpendicular(across, tangent.to_array());
@@ -74,31 +76,32 @@ impl Shell {
         Self { axes, min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }
     }
 
-    /// Grown around other boxes.
-    pub(super) fn holding(self, others: &[Self]) -> Self {
+    /// Grows the box to enclose other boxes.
+    pub(super) fn enclosing(self, others: &[Self]) -> Self {
         let to_axes = self.axes.transpose();
-        others.iter().fold(self, |shell, other| {
+        others.iter().fold(self, |obb, other| {
             let turn = to_axes * other.axes;
             let middle = turn * (0.5 * (other.min + other.max));
             let spread = DMat3::from_cols(turn.x_axis.abs(), turn.y_axis.abs(), turn.z_axis.abs());
             let half = spread * (0.5 * (other.max - other.min));
-            Self { min: shell.min.min(middle - half), max: shell.max.max(middle + half), ..shell }
+            Self { min: obb.min.min(middle - half), max: obb.max.max(middle + half), ..obb }
         })
     }
 
-    /// A box around it, grown by `rounding`, for this node.
-    pub(super) fn rounded(&self, rounding: f64, node: &Node) -> OrientedBox {
+    /// Converts the box to `f32` for `node`, with a margin of `rounding`.
+    pub(super) fn packed(&self, rounding: f64, node: &Node) -> PackedBox {
         let f = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
-        OrientedBox {
+        PackedBox {
             axes: [f(self.axes.x_axis), f(self.axes.y_axis), f(self.axes.z_axis)],
             middle: f(0.5 * (self.min + self.max)),
             half: f(0.5 * (self.max - self.min) + rounding),
-            held: if node.is_leaf() { 8 * node.first + node.count } else { 8 * node.first },
+            contents: if node.is_leaf() { 8 * node.first + node.count } else { 8 * node.first },
         }
     }
 }
 
-/// Bound on how far rounding to `f32` moves a coordinate along an axis, over the largest coordinate plus one: of the point and the
-/// axis, of three products and two sums, of the middle and the difference to it. Larger: needless visits. Smaller than
-/// 14 · 2⁻²⁴: a nearest triangle could be missed by more than the error bound says.
+/// Bound on how far rounding to `f32` moves a coordinate along an axis, relative to the largest
+/// coordinate plus one. It covers the rounding of the point and the axis, of three products and two
+/// sums, of the center and of the difference from it. Larger: needless visits. Smaller than 14 ·
+/// 2⁻²⁴: the search could miss a nearest triangle by more than the error bound allows.
 pub(super) const COORDINATE_ROUNDING: f64 = 1e-6;

@@ -1,24 +1,27 @@
-//! Patches over the holes of a mesh, which make of its inside a matter of whole numbers and of few triangles.
+//! Patches over the holes of a mesh, which reduce its signs to integers and a few triangles.
 
 use glam::DVec3;
 
 use crate::{Bvh, BvhError, WindingNumber};
 
-/// Triangles that close a mesh: a fan over each connected set of open edges, around its centroid.
+/// Triangles that close a mesh: a fan around the centroid of each connected set of open edges.
 ///
-/// Where the mesh alone has the winding number w, and mesh and patches together the whole number W, the patches alone have W − w. So
-/// w > ½ exactly where the patches have less than W − ½, and far from them, where they have less than ½ either way, where W ≥ 1.
+/// Let w be the winding number of the mesh, W the integer winding number of mesh and patches
+/// together. Then the patches alone have the winding number W − w. So w > ½ exactly if the number
+/// of the patches is below W − ½. Far from the patches their number is between −½ and ½, and the
+/// condition becomes W ≥ 1.
 #[derive(Debug)]
 pub(super) struct Patches {
-    /// Vertices of the mesh keep their numbers; the centroids follow them.
+    /// Vertices of the mesh keep their indices; the centroids follow them.
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) positions: Vec<[DVec3; 3]>,
 }
 
 impl Patches {
-    /// Patches for these [open edges](crate::mesh_distance::open_edges) of a mesh with vertices at `positions`.
+    /// Creates patches for the [open edges](crate::mesh_distance::open_edges) of a mesh with
+    /// vertices at `positions`.
     pub(super) fn over(open_edges: &[[u32; 2]], positions: &[DVec3]) -> Self {
-        // Vertices on open edges, numbered from zero, and the connected sets they form.
+        // Number the vertices on open edges from zero, and find connected sets.
         let mut vertices: Vec<u32> = open_edges.iter().flatten().copied().collect();
         vertices.sort_unstable();
         vertices.dedup();
@@ -47,10 +50,10 @@ impl Patches {
         Self { triangles, positions }
     }
 
-    /// Winding numbers with respect to the patches.
+    /// Prepares winding numbers with respect to the patches.
     ///
     /// # Errors
-    /// Those of [`Bvh::new`]; none for vertices of a mesh that has a hierarchy itself.
+    /// Those of [`Bvh::new`]; cannot fail if the mesh itself has a hierarchy.
     pub(super) fn winding_number(&self) -> Result<WindingNumber, BvhError> {
         let triangles: Vec<[u32; 3]> =
             (0..self.positions.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();

@@ -1,10 +1,10 @@
-//! What the search for nearest triangles needs, made of a hierarchy.
+//! Data for the search for nearest triangles, prepared from a hierarchy.
 
 use rayon::prelude::*;
 
 use super::flat_triangle::FlatTriangle;
-use super::grain::{GRAIN, Grain, Place, prepare};
-use super::oriented_box::{COORDINATE_ROUNDING, OrientedBox, Shell};
+use super::leaf_block::{LEAF_BLOCK, OutputSlice, SubtreeSummary, prepare};
+use super::oriented_box::{COORDINATE_ROUNDING, OrientedBox, PackedBox};
 use crate::Bvh;
 use crate::bvh::Node;
 use crate::huge_pages::in_huge_pages;
@@ -12,41 +12,43 @@ use crate::huge_pages::in_huge_pages;
 /// Boxes and triangles in the order of the hierarchy.
 #[derive(Debug)]
 pub(super) struct Preparation {
-    pub(super) boxes: Vec<OrientedBox>,
+    pub(super) boxes: Vec<PackedBox>,
     pub(super) triangles: Vec<FlatTriangle>,
     /// Square of the length of the longest edge in the unit frame.
     pub(super) longest2: f64,
 }
 
-/// Triangles that one task prepares at most. Larger balances worse; smaller leaves more to be done in the end.
+/// Maximum number of triangles per task. Larger: worse load balance. Smaller: more work is left for
+/// the final sequential pass.
 const TASK: u32 = 1 << 13;
 
-/// Triangles in a lump at most: boxes of larger pieces hold those of the lumps in them, boxes of lumps those of grains, which is
-/// nearly as tight as around all corners, and far faster. Larger: slower. Smaller: looser boxes of large pieces.
-const LUMP: u32 = 256;
+/// Maximum number of triangles in a cluster. The boxes of larger parts enclose boxes of clusters,
+/// and the boxes of clusters enclose those of leaf blocks. This is nearly as tight as enclosing all
+/// corners, and much faster. Larger: slower. Smaller: looser boxes of large parts.
+const CLUSTER: u32 = 256;
 
 /// A part of the hierarchy.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
-    grain: Grain,
-    /// Where the shells begin of the grains that make it up, or of the lumps.
-    shells_from: usize,
+    summary: SubtreeSummary,
+    /// Start of the boxes of its leaf blocks or clusters in the list of such boxes.
+    obbs_from: usize,
 }
 
-/// A subtree that is prepared on its own.
+/// A subtree that is prepared by one task.
 #[derive(Debug)]
 struct Task<'a> {
     root: usize,
-    place: Place<'a>,
+    out: OutputSlice<'a>,
 }
 
 impl Preparation {
-    /// For points whose coordinates are not larger than `largest`.
+    /// Prepares a search for points whose coordinates are not larger than `largest`.
     pub(super) fn new(bvh: &Bvh, largest: f64) -> Self {
         let nodes = bvh.nodes();
         let rounding = COORDINATE_ROUNDING * (largest + 1.0);
         let mut triangles: Vec<FlatTriangle> = in_huge_pages(bytemuck::zeroed_vec(bvh.triangles().len()));
-        let mut boxes: Vec<OrientedBox> = in_huge_pages(bytemuck::zeroed_vec(nodes.len()));
+        let mut boxes: Vec<PackedBox> = in_huge_pages(bytemuck::zeroed_vec(nodes.len()));
 
         let mut roots = Vec::new();
         fold(nodes, 0, TASK, |root, _: Option<[(); 2]>| {
@@ -57,7 +59,7 @@ impl Preparation {
         let (mut triangles_left, mut boxes_left) = (&mut triangles[..], &mut boxes[..]);
         let mut tasks = Vec::with_capacity(roots.len());
         for &root in roots.iter().rev() {
-            // What is below a root comes behind what is below those before it.
+            // The triangles and boxes below a root follow those below all earlier roots.
             let first_slot = triangles_left.len() - nodes[root].count as usize;
             let first_box = if nodes[root].is_leaf() { boxes_left.len() } else { nodes[root].first as usize };
             let (before, triangles) = triangles_left.split_at_mut(first_slot);
@@ -66,97 +68,106 @@ impl Preparation {
             boxes_left = before;
             tasks.push(Task {
                 root,
-                place: Place { first_slot: first_slot as u32, triangles, first_box, boxes, rounding },
+                out: OutputSlice { first_slot: first_slot as u32, triangles, first_box, boxes, rounding },
             });
         }
         tasks.reverse();
-        let done: Vec<(Grain, Vec<Shell>)> = tasks.into_par_iter().map(|task| task.run(bvh)).collect();
+        let done: Vec<(SubtreeSummary, Vec<OrientedBox>)> = tasks.into_par_iter().map(|task| task.run(bvh)).collect();
 
-        let (mut lumps, mut next) = (Vec::new(), 0);
+        let (mut clusters, mut next) = (Vec::new(), 0);
         let whole = fold(nodes, 0, TASK, |node, parts: Option<[Piece; 2]>| match parts {
             None => {
-                let (grain, shells) = &done[next];
+                let (summary, obbs) = &done[next];
                 next += 1;
-                lumps.extend_from_slice(shells);
-                Piece { grain: *grain, shells_from: lumps.len() - shells.len() }
+                clusters.extend_from_slice(obbs);
+                Piece { summary: *summary, obbs_from: clusters.len() - obbs.len() }
             }
             Some([left, right]) => {
                 let first = nodes[node].first as usize;
-                boxes[first] = left.grain.shell.rounded(rounding, &nodes[first]);
-                boxes[first + 1] = right.grain.shell.rounded(rounding, &nodes[first + 1]);
-                let shells_from = left.shells_from;
-                Piece { grain: Grain::join(&left.grain, &right.grain, &lumps[shells_from..]), shells_from }
+                boxes[first] = left.summary.obb.packed(rounding, &nodes[first]);
+                boxes[first + 1] = right.summary.obb.packed(rounding, &nodes[first + 1]);
+                let obbs_from = left.obbs_from;
+                Piece {
+                    summary: SubtreeSummary::join(&left.summary, &right.summary, &clusters[obbs_from..]),
+                    obbs_from,
+                }
             }
         });
-        boxes[0] = whole.grain.shell.rounded(rounding, &nodes[0]);
-        Self { boxes, triangles, longest2: whole.grain.longest2 }
+        boxes[0] = whole.summary.obb.packed(rounding, &nodes[0]);
+        Self { boxes, triangles, longest2: whole.summary.longest2 }
     }
 }
 
 impl Task<'_> {
-    /// Prepares all below the root. What comes of the root itself, and the shells of the lumps in it.
-    fn run(mut self, bvh: &Bvh) -> (Grain, Vec<Shell>) {
+    /// Prepares all nodes below the root. Returns the summary of the root and the boxes of its
+    /// clusters.
+    fn run(mut self, bvh: &Bvh) -> (SubtreeSummary, Vec<OrientedBox>) {
         let nodes = bvh.nodes();
-        let (mut grains, mut lumps) = (Vec::new(), Vec::new());
-        let mut slot = self.place.first_slot;
-        let whole = fold(nodes, self.root, GRAIN, |node, parts: Option<[Piece; 2]>| match parts {
+        let (mut blocks, mut clusters) = (Vec::new(), Vec::new());
+        let mut slot = self.out.first_slot;
+        let whole = fold(nodes, self.root, LEAF_BLOCK, |node, parts: Option<[Piece; 2]>| match parts {
             None => {
-                let grain = prepare(bvh, node, slot, &mut self.place);
+                let summary = prepare(bvh, node, slot, &mut self.out);
                 slot += nodes[node].count;
-                grains.push(grain.shell);
-                Piece { grain, shells_from: grains.len() - 1 }
+                blocks.push(summary.obb);
+                Piece { summary, obbs_from: blocks.len() - 1 }
             }
             Some([left, right]) => {
                 let first = nodes[node].first as usize;
-                let mut shells_from = left.shells_from;
+                let mut obbs_from = left.obbs_from;
                 for (child, piece) in [(first, &left), (first + 1, &right)] {
-                    self.place.boxes[child - self.place.first_box] =
-                        piece.grain.shell.rounded(self.place.rounding, &nodes[child]);
+                    self.out.boxes[child - self.out.first_box] =
+                        piece.summary.obb.packed(self.out.rounding, &nodes[child]);
                 }
-                if nodes[node].count <= LUMP {
+                if nodes[node].count <= CLUSTER {
                     return Piece {
-                        grain: Grain::join(&left.grain, &right.grain, &grains[shells_from..]),
-                        shells_from,
+                        summary: SubtreeSummary::join(&left.summary, &right.summary, &blocks[obbs_from..]),
+                        obbs_from,
                     };
                 }
-                // Lumps end here.
-                let are_lumps = [first, first + 1].map(|child| nodes[child].count <= LUMP);
-                shells_from = match are_lumps {
-                    [true, true] => lumps.len(),
-                    [true, false] => right.shells_from,
-                    [false, _] => left.shells_from,
+                // The node is larger than a cluster, so the children that are clusters become
+                // final.
+                let are_clusters = [first, first + 1].map(|child| nodes[child].count <= CLUSTER);
+                obbs_from = match are_clusters {
+                    [true, true] => clusters.len(),
+                    [true, false] => right.obbs_from,
+                    [false, _] => left.obbs_from,
                 };
-                for (piece, is_lump) in [(&right, are_lumps[1]), (&left, are_lumps[0])] {
-                    if is_lump {
-                        grains.truncate(piece.shells_from);
-                        lumps.push(piece.grain.shell);
+                for (piece, is_cluster) in [(&right, are_clusters[1]), (&left, are_clusters[0])] {
+                    if is_cluster {
+                        blocks.truncate(piece.obbs_from);
+                        clusters.push(piece.summary.obb);
                     }
                 }
-                Piece { grain: Grain::join(&left.grain, &right.grain, &lumps[shells_from..]), shells_from }
+                Piece {
+                    summary: SubtreeSummary::join(&left.summary, &right.summary, &clusters[obbs_from..]),
+                    obbs_from,
+                }
             }
         });
-        if nodes[self.root].count <= LUMP {
-            lumps.push(whole.grain.shell);
+        if nodes[self.root].count <= CLUSTER {
+            clusters.push(whole.summary.obb);
         }
-        (whole.grain, lumps)
+        (whole.summary, clusters)
     }
 }
 
-/// Walks through a subtree from its ends up, in the order of its triangles: calls `visit` for the largest parts of at most `size`
-/// triangles, and for every node above with what came of its children. What comes of the root.
+/// Traverses a subtree bottom-up in the order of its triangles. Calls `visit` for the largest parts
+/// of at most `size` triangles, and for every node above them with the results of its children.
+/// Returns the result of the root.
 fn fold<T>(nodes: &[Node], root: usize, size: u32, mut visit: impl FnMut(usize, Option<[T; 2]>) -> T) -> T {
     let is_end = |node: usize| nodes[node].is_leaf() || nodes[node].count <= size;
-    // A stack of its own: hierarchies of equal triangles are as deep as they have nodes.
+    // An explicit stack, because hierarchies of equal triangles are as deep as they have nodes.
     let mut pending: Vec<(usize, Option<T>)> = Vec::new();
     let mut node = root;
     loop {
-        // Down to the first end.
+        // Descend to the first part that is small enough.
         while !is_end(node) {
             pending.push((node, None));
             node = nodes[node].first as usize;
         }
         let mut done = visit(node, None);
-        // Up as long as both children are done.
+        // Ascend while both children are done.
         loop {
             match pending.pop() {
                 None => return done,

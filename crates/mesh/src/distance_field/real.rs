@@ -1,4 +1,4 @@
-//! The two precisions that kernels are written for.
+//! The floating-point types of the kernels.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
@@ -8,10 +8,10 @@ pub(super) trait Real:
 {
     const ZERO: Self;
 
-    /// The nearest number.
+    /// Rounds to the nearest representable number.
     fn of(value: f64) -> Self;
 
-    /// The same number; every precision has those of `f32`.
+    /// Converts exactly; every implementation includes `f32`.
     fn of_single(value: f32) -> Self;
 
     fn to_f64(self) -> f64;

@@ -7,14 +7,17 @@ use rayon::prelude::*;
 
 use super::Grid;
 use super::exact_distance::{Points, exact_squared_distances};
-use super::packet::{LANES, NOTHING, PACKET, Packet, PacketSearch};
+use super::lanes::{LANES, PACKET};
+use super::packet::{NOTHING, Packet};
+use super::packet_search::PacketSearch;
 use crate::huge_pages::in_huge_pages;
 use crate::{Bvh, Cancelled, Monitor};
 
-/// Distances without sign, and a bound on their error, both in model units.
+/// Returns unsigned distances and a bound on their error, both in model units.
 ///
-/// Triangles are chosen in `f32` and measured in `f64`, so that an error can only come from a choice between triangles that are
-/// nearly equally near, and from rounding the result. Nodes farther than `band` get that distance.
+/// Triangles are selected in `f32` and measured in `f64`. So errors come only from selecting among
+/// nearly equidistant triangles, and from rounding the result. Nodes farther away than `band` are
+/// set to `band`.
 pub(super) fn unsigned(
     search: &PacketSearch,
     bvh: &Bvh,
@@ -28,7 +31,7 @@ pub(super) fn unsigned(
     let slab = nx * ny * PACKET[2];
     let slabs = nz.div_ceil(PACKET[2]);
     let done = AtomicUsize::new(0);
-    // A slab knows nothing of other slabs, so that the result does not depend on how threads share them.
+    // Slabs are independent, so the result does not depend on their assignment to threads.
     samples.par_chunks_mut(slab).enumerate().try_for_each(|(number, samples)| {
         let slab = Slab { search, bvh, grid, band, layer: number * PACKET[2] };
         let mut last_strip = vec![[NOTHING; LANES]; nx.div_ceil(PACKET[0])];
@@ -43,23 +46,24 @@ pub(super) fn unsigned(
     Ok((samples, error_bound(bvh, search, f64::from(farthest))))
 }
 
-/// Layers of a grid as thick as a packet.
+/// Layers of a grid, as many as a packet has.
 struct Slab<'a> {
     search: &'a PacketSearch,
     bvh: &'a Bvh,
     grid: &'a Grid,
     band: f64,
-    /// The first of the layers.
+    /// Index of the first layer.
     layer: usize,
 }
 
-/// Fills a strip of packets through the layers that `samples` has room for. `found` are the triangles that the packets of the strip
-/// before found, and of this one in the end: what a packet finds is near to what those beside it found.
+/// Fills a strip of packets in the layers of `samples`. On entry, `found` holds the triangles found
+/// by the packets of the previous strip, on return those of this strip. They are good guesses,
+/// because neighboring packets have nearby results.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
 fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], found: &mut [[u32; LANES]]) {
     let Slab { search, bvh, grid, band, layer } = *slab;
     let scale = bvh.frame().scale();
-    // A little more, so that rounding finds too much rather than too little.
+    // Slightly more, so that rounding includes too much rather than too little.
     let reach = band * scale * (1.0 + 4.0 * EPSILON);
     let [nx, ny, _] = grid.dims;
     let layers = samples.len() / (nx * ny);
@@ -70,12 +74,12 @@ fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], found: &mut 
         let mut index = [0; LANES];
         let mut points = Points::ZERO;
         for lane in 0..LANES {
-            // Lanes that stick out repeat the last node inside.
+            // Lanes outside the grid repeat the last node inside.
             let i = (column * PACKET[0] + lane % PACKET[0]).min(nx - 1);
             let j = (strip * PACKET[1] + lane / PACKET[0] % PACKET[1]).min(ny - 1);
             let k = (lane / (PACKET[0] * PACKET[1])).min(layers - 1);
             index[lane] = (k * ny + j) * nx + i;
-            points.set(lane, bvh.frame().inward(grid.node(i, j, layer + k)));
+            points.set(lane, bvh.frame().to_unit(grid.node(i, j, layer + k)));
         }
         let mut packet = Packet {
             x: points.x.map(|x| x as f32),
@@ -84,6 +88,8 @@ fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], found: &mut 
             squared: [(reach * reach) as f32; LANES],
             slot: [NOTHING; LANES],
         };
+        // Guesses: the distinct triangles of the packet before in this strip and of the one in the
+        // last strip.
         guesses.clear();
         for &slot in found[column.saturating_sub(1)..=column].as_flattened() {
             if slot != NOTHING && !guesses.contains(&slot) {
@@ -106,16 +112,22 @@ fn sample_strip(slab: &Slab<'_>, strip: usize, samples: &mut [f32], found: &mut 
 /// Half a unit in the last place of `f32`, relative.
 const EPSILON: f64 = f32::EPSILON as f64 / 2.0;
 
-/// In the unit frame, with ε = 2⁻²⁴, E the largest coordinate of a node, d the distance and L the longest edge:
+/// Bound on the error of the samples, model units.
 ///
-/// - Rounding the node and the triangle's first corner to `f32` displaces one against the other by at most √3 ε (E + 1).
-/// - Their difference, at most d + L long, is rounded (ε), turned into the triangle's plane by rounded unit vectors (4ε with the
-///   sum), compared with rounded lengths and directions in the plane (3ε), and squared and summed (2ε as a distance): 10 ε (d + L).
-/// - A box, which is grown by the rounding of coordinates along its axes, may be left out by comparison with its squared distance,
-///   whose sum and squares are wrong by no more than 2ε as a distance.
+/// In the unit frame, let ε = 2⁻²⁴, E the largest coordinate of a node, d the distance and L the
+/// longest edge.
 ///
-/// So the distance by which a triangle is chosen is off by δ = ε (√3 (E + 1) + 12 (d + L)), and the chosen triangle is no more than
-/// 2δ farther than the nearest. Its distance is then rounded to `f32`: ε d.
+/// - Rounding the node and the triangle's first corner to `f32` displaces one against the other by
+///   at most √3 ε (E + 1).
+/// - Their difference, at most d + L long, is rounded (ε), rotated into the triangle's plane by
+///   rounded unit vectors (4ε with the sum), compared with rounded lengths and directions in the
+///   plane (3ε), and squared and summed (2ε as a distance). The total is 10 ε (d + L).
+/// - A box has a margin for the rounding of coordinates along its axes. It is pruned by its squared
+///   distance, whose sum and squares are off by no more than 2ε as a distance.
+///
+/// So the distance that selects a triangle is off by at most δ = ε (√3 (E + 1) + 12 (d + L)). The
+/// selected triangle is no more than 2δ farther away than the nearest. Its distance is then rounded
+/// to `f32`, which adds ε d.
 fn error_bound(bvh: &Bvh, search: &PacketSearch, farthest: f64) -> f64 {
     let scale = bvh.frame().scale();
     let distance = farthest * scale;

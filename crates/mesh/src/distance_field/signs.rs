@@ -1,4 +1,4 @@
-//! Which nodes of a grid lie inside.
+//! Signs of the nodes of a grid: inside or outside.
 
 #[cfg(test)]
 mod tests;
@@ -13,20 +13,22 @@ use super::row_crossings::RowCrossings;
 use super::{DistanceFieldError, Grid};
 use crate::{Bvh, Monitor, TriMesh, WindingNumber};
 
-/// Nodes of the hierarchy between two looks at the monitor.
+/// Nodes of the hierarchy between two checks of the monitor.
 const NODES_AT_ONCE: usize = 1 << 13;
 
-/// Nodes along each side of a brick, for which one look at the patches from afar may do.
+/// Nodes along each side of a brick. A brick far from all patches is decided as a whole.
 const BRICK: usize = 4;
 
-/// Distance from a patch, over the longest side of the mesh, within which the patches are not asked. Larger: slower. Smaller than
-/// rounding, 1e-15: which side of a patch a node is on could be judged in two ways.
+/// Distance from a patch, relative to the longest side of the mesh, below which the winding number
+/// of the mesh is used instead of that of the patches. Larger: slower. Smaller than the rounding of
+/// 1e-15: a node on a patch could be assigned inconsistently.
 const TOO_CLOSE: f64 = 1e-9;
 
-/// Makes the distances of the nodes inside negative: of those with a winding number above one half.
+/// Negates the distances of the nodes inside, those whose winding number exceeds one half.
 ///
-/// `open_edges` are those of the mesh. Without any, counting crossings of rows is all. With some, patches close the mesh for that
-/// count, and their own winding number, which fades with the distance from the holes, is taken off.
+/// `open_edges` are the open edges of the mesh. Without open edges, counting crossings of rows is
+/// enough. With open edges, patches close the mesh for the count. Then the winding number of the
+/// patches, which decreases with the distance from the holes, is subtracted.
 pub(super) fn negate_inside(
     samples: &mut [f32],
     mesh: &TriMesh,
@@ -37,7 +39,7 @@ pub(super) fn negate_inside(
 ) -> Result<(), DistanceFieldError> {
     let rows = RowCrossings::new(grid, bvh.frame());
     bvh.nodes().par_chunks(NODES_AT_ONCE).try_for_each(|nodes| {
-        // Most triangles of a fine mesh lie between rows, and so do most leaves.
+        // Most triangles of a fine mesh are between rows, and so are most leaves.
         for leaf in nodes.iter().filter(|node| node.is_leaf() && rows.may_meet(node)) {
             for slot in leaf.first..leaf.first + leaf.count {
                 rows.add(&bvh.corners(slot), &bvh.triangles()[slot as usize]);
@@ -53,7 +55,7 @@ pub(super) fn negate_inside(
 
     let patches = Patches::over(open_edges, &mesh.positions);
     for (corners, vertices) in patches.positions.iter().zip(&patches.triangles) {
-        rows.add(&corners.map(|corner| bvh.frame().inward(corner)), vertices);
+        rows.add(&corners.map(|corner| bvh.frame().to_unit(corner)), vertices);
     }
     let numbers = rows.into_winding_numbers();
     let of_patches = patches.winding_number()?;

@@ -1,8 +1,10 @@
-//! Prefiltered tricubic B-splines: from samples to coefficients, and from coefficients to value and gradient.
+//! Prefiltered tricubic B-splines: from samples to coefficients, and from coefficients to value and
+//! gradient.
 //!
-//! M. Unser, A. Aldroubi, M. Eden, *B-Spline Signal Processing: Part II* (1993): the cubic B-spline interpolates through
-//! coefficients that a recursive filter makes of the samples, once forward and once backward along each axis. Samples are taken
-//! to continue in a mirror at both ends (the end itself not repeated).
+//! A recursive filter turns samples into the coefficients of the interpolating cubic B-spline, with
+//! one pass forward and one backward along each axis (M. Unser, A. Aldroubi, M. Eden, *B-Spline
+//! Signal Processing: Part II*, 1993). Samples are mirrored at both ends without repeating the end
+//! itself.
 
 use rayon::prelude::*;
 
@@ -10,19 +12,20 @@ use super::real::Real;
 use crate::huge_pages::in_huge_pages;
 use crate::{Cancelled, Monitor};
 
-/// The pole of the cubic spline filter, √3 − 2.
+/// The pole z of the cubic spline filter, √3 − 2.
 const POLE: f64 = -0.267_949_192_431_122_7;
 
 /// Gain of the filter along one axis, (1 − z)(1 − 1/z) = 6.
 const GAIN: f64 = 6.0;
 
-/// Terms of the mirrored sum that starts the forward pass. |z|^28 < 1e-16; more change nothing.
+/// Terms of the mirrored sum that starts the forward pass. |z|^28 < 1e-16, so more change nothing.
 const START_TERMS: usize = 28;
 
-/// Rows of x that are filtered side by side, because each value of a row waits for the one before.
+/// Rows along x that are filtered side by side, because each value of a row depends on the one
+/// before.
 const ROWS: usize = 8;
 
-/// Coefficients of the spline through `samples` (x fastest).
+/// Computes the coefficients of the spline through `samples` (x fastest).
 pub(super) fn coefficients(samples: &[f32], dims: [usize; 3], monitor: &dyn Monitor) -> Result<Vec<f32>, Cancelled> {
     let [nx, ny, nz] = dims;
     let layer = nx * ny;
@@ -42,7 +45,8 @@ pub(super) fn coefficients(samples: &[f32], dims: [usize; 3], monitor: &dyn Moni
         monitor.check_cancelled()
     })?;
     monitor.check("spline", 0.25)?;
-    // Along z the lines cross all layers: each task takes those of one row of x, copied out and back.
+    // Along z the lines cross all layers. Each task takes those of one row along x, copied out and
+    // back.
     let mut coefficients = in_huge_pages(vec![0.0; samples.len()]);
     let mut rows: Vec<Vec<&mut [f32]>> = (0..ny).map(|_| Vec::with_capacity(nz)).collect();
     coefficients.chunks_mut(nx).enumerate().for_each(|(row, out)| rows[row % ny].push(out));
@@ -57,7 +61,7 @@ pub(super) fn coefficients(samples: &[f32], dims: [usize; 3], monitor: &dyn Moni
     Ok(coefficients)
 }
 
-/// Filters `width` interleaved lines at once: the samples of each are `width` apart.
+/// Filters `width` interleaved lines at once. The samples of each line are `width` apart.
 fn filter(lines: &mut [f64], width: usize) {
     let length = lines.len() / width;
     if length < 2 {
@@ -65,7 +69,7 @@ fn filter(lines: &mut [f64], width: usize) {
     }
     lines.iter_mut().for_each(|value| *value *= GAIN);
 
-    // The first forward value is the sum of z^k over the mirrored line.
+    // The first forward value is the sum of z^k s[k] over the mirrored line.
     let last = length - 1;
     let period = 2 * last;
     let mut start = vec![0.0; width];
@@ -79,16 +83,19 @@ fn filter(lines: &mut [f64], width: usize) {
         power *= POLE;
     }
     lines[..width].copy_from_slice(&start);
+    // Forward pass: c⁺[i] = s[i] + z c⁺[i − 1].
     for i in 1..length {
         let (before, here) = lines.split_at_mut(i * width);
         for (here, before) in here[..width].iter_mut().zip(&before[(i - 1) * width..]) {
             *here += POLE * before;
         }
     }
+    // The mirror condition gives the last coefficient.
     let (before, end) = lines.split_at_mut(last * width);
     for (end, before) in end.iter_mut().zip(&before[(last - 1) * width..]) {
         *end = POLE / (POLE * POLE - 1.0) * (*end + POLE * before);
     }
+    // Backward pass: c[i] = z (c[i + 1] − c⁺[i]).
     for i in (0..last).rev() {
         let (here, after) = lines.split_at_mut((i + 1) * width);
         for (here, after) in here[i * width..].iter_mut().zip(&after[..width]) {
@@ -97,7 +104,7 @@ fn filter(lines: &mut [f64], width: usize) {
     }
 }
 
-/// Weights of the four coefficients around `t`, the part of the cell passed, from 0 to 1.
+/// Weights of the four coefficients around `t`, the fraction of the cell from 0 to 1.
 #[inline(always)]
 pub(super) fn weights<T: Real>(t: T) -> [T; 4] {
     let [half, sixth, two_thirds] = [0.5, 1.0 / 6.0, 2.0 / 3.0].map(T::of);
@@ -105,7 +112,7 @@ pub(super) fn weights<T: Real>(t: T) -> [T; 4] {
     let first = s * s * s * sixth;
     let last = t * t * t * sixth;
     let second = two_thirds - half * t * t * (T::of(1.0) + s);
-    // They sum to one, also after rounding: the field of a constant is that constant.
+    // The weights sum to one even after rounding, so a constant is reproduced exactly.
     [first, second, T::of(1.0) - first - second - last, last]
 }
 
@@ -126,17 +133,17 @@ mod tests {
     use crate::NoProgress;
 
     fn samples(count: usize) -> Vec<f32> {
-        // Any numbers without structure: multiples of an irrational, fractional parts.
+        // Numbers without structure: fractional parts of multiples of an irrational number.
         (1..=count).map(|i| (i as f32 * 0.618_034).fract() - 0.5).collect()
     }
 
     #[test]
-    fn spline_goes_through_the_samples() {
+    fn spline_interpolates_the_samples() {
         for dims in [[7, 6, 5], [2, 9, 3], [1, 1, 8], [40, 3, 2]] {
             let samples = samples(dims.iter().product());
             let coefficients = coefficients(&samples, dims, &NoProgress).unwrap();
             let [nx, ny, nz] = dims;
-            // At a node the weights are 1/6, 4/6, 1/6 along each axis, across the ends mirrored.
+            // At a node the weights are 1/6, 4/6, 1/6 along each axis, mirrored at the ends.
             let at = |i: isize, nodes: usize| {
                 if nodes == 1 {
                     0

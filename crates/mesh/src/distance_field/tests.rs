@@ -32,7 +32,7 @@ fn scattered(bounds: Aabb, count: usize) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Signed distance by looking at every triangle, the sign from the sum of all solid angles.
+/// Signed distance by brute force over all triangles. The sign is from the sum of all solid angles.
 fn by_brute_force(mesh: &TriMesh, point: DVec3) -> f64 {
     let mut distance = f64::INFINITY;
     let mut angle = 0.0;
@@ -45,7 +45,8 @@ fn by_brute_force(mesh: &TriMesh, point: DVec3) -> f64 {
     if angle > 2.0 * std::f64::consts::PI { -distance } else { distance }
 }
 
-/// Distance to a triangle: least over the border segments and, inside, over the plane.
+/// Distance to a triangle: the minimum over its border and, if the point projects inside, its
+/// plane.
 fn closest_by_ternary_search(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let to_segment = |p: DVec3, q: DVec3| {
         let t = ((point - p).dot(q - p) / (q - p).length_squared()).clamp(0.0, 1.0);
@@ -65,7 +66,7 @@ fn samples_agree_with_brute_force() {
         transformed(&bumpy, |p| p),
         transformed(&bumpy, |p| p * 1e-12),
         transformed(&bumpy, |p| p * 1e12),
-        // Here f32 alone could not tell the vertices apart.
+        // At this offset, f32 alone could not distinguish the vertices.
         transformed(&bumpy, |p| p + dvec3(1e6, -2e6, 3e6)),
         box_mesh(dvec3(1.0, 0.4, 0.1), [3, 2, 1]),
     ];
@@ -77,7 +78,7 @@ fn samples_agree_with_brute_force() {
             let expected = by_brute_force(mesh, field.grid().node_at(index));
             assert!((f64::from(sample) - expected).abs() <= error, "{sample}, not {expected}, at node {index}");
         }
-        // A bound far from the truth would be useless: less than a millionth of the size.
+        // The bound is not far from the truth: less than a millionth of the size.
         assert!(field.sample_error() < 2e-6 * mesh.bounds().size().max_element());
     }
 }
@@ -102,7 +103,7 @@ fn signs_are_right_far_from_holes() {
     let open = field(&mesh, 24, Padding::Cells(2));
     assert!(!open.is_closed());
     assert_eq!(open.grid(), whole.grid());
-    let mut judged = 0;
+    let mut compared = 0;
     for (index, (&with, &without)) in whole.samples().iter().zip(open.samples()).enumerate() {
         let node = open.grid().node_at(index);
         let is_near_hole = holes.iter().any(|hole| {
@@ -110,11 +111,11 @@ fn signs_are_right_far_from_holes() {
             hole.iter().any(|&corner| corner.distance(node) < size)
         });
         if !is_near_hole {
-            judged += 1;
+            compared += 1;
             assert_eq!(with < 0.0, without < 0.0, "at node {index}");
         }
     }
-    assert!(judged > open.samples().len() / 2);
+    assert!(compared > open.samples().len() / 2);
 }
 
 #[test]
@@ -147,7 +148,7 @@ fn neighbors_differ_by_no_more_than_their_distance() {
 }
 
 #[test]
-fn spline_goes_through_the_samples_and_reaches_as_far_as_asked() {
+fn spline_interpolates_the_samples_up_to_the_requested_reach() {
     let mesh = bumpy();
     let reach = 0.37;
     let field = field(&mesh, 24, Padding::Reach(reach));
@@ -158,8 +159,9 @@ fn spline_goes_through_the_samples_and_reaches_as_far_as_asked() {
         let is_inner = |i: usize, n: usize| (1..n - 1).contains(&i);
         let (value, _) = field.sample(field.grid().node_at(index));
         if is_inner(i, nx) && is_inner(j, ny) && is_inner(k, nz) {
-            // Sums of coefficients rounded to f32, which near kinks are a few times the samples; the samples are below 2.
-            // A node on the border of the inner cells may be rounded out of them.
+            // Sums of coefficients rounded to f32. Near kinks the coefficients are a few times the
+            // samples, which are below 2. A node on the border of the inner cells may be rounded
+            // out of them.
             assert!(value.is_infinite() || (value - f64::from(field.samples()[index])).abs() < 1e-6);
         } else {
             assert_eq!(value, f64::INFINITY);
@@ -173,7 +175,7 @@ fn spline_goes_through_the_samples_and_reaches_as_far_as_asked() {
 }
 
 #[test]
-fn beyond_the_grid_is_infinitely_far() {
+fn distance_is_infinite_outside_the_grid() {
     let field = field(&icosphere(1.0, 2), 8, Padding::Cells(2));
     for point in [dvec3(9.0, 0.0, 0.0), dvec3(0.0, -1e300, 0.0), DVec3::INFINITY, DVec3::NAN] {
         assert_eq!(field.sample(point), (f64::INFINITY, DVec3::ZERO));
@@ -181,12 +183,12 @@ fn beyond_the_grid_is_infinitely_far() {
 }
 
 #[test]
-fn spline_of_a_sphere_is_nearly_its_distance() {
+fn spline_of_a_sphere_approximates_its_distance() {
     let mesh = icosphere(1.0, 5);
     let field = field(&mesh, 48, Padding::Reach(0.3));
     for point in scattered(field.bounds().expanded(0.17), 2_000).filter(|p| p.length() > 0.8) {
         let (value, gradient) = field.sample(point);
-        // The facets of this sphere lie up to 5e-4 inside it and lean by up to 0.03.
+        // The facets of this sphere are up to 5e-4 inside it and tilted by up to 0.03.
         assert!((value - (point.length() - 1.0)).abs() < 1e-3);
         assert!((gradient - point.normalize()).length() < 0.05);
     }
@@ -201,7 +203,7 @@ fn lipschitz_bounds_the_gradient() {
             .map(|(_, gradient)| gradient.length())
             .fold(0.0, f64::max);
         assert!(steepest <= field.lipschitz());
-        // Two halvings leave little slack, and the spline of a distance does not slope much more than one.
+        // Halving leaves little slack, and the spline of a distance is not much steeper than one.
         assert!(field.lipschitz() < 1.2 * steepest && field.lipschitz() < 2.0);
     }
 }
@@ -226,7 +228,7 @@ proptest! {
 }
 
 #[test]
-fn lanes_do_not_see_each_other() {
+fn lanes_are_independent() {
     let field = field(&icosphere(1.0, 1), 8, Padding::Cells(2));
     let points: Vec<_> = scattered(field.grid().bounds().expanded(0.2), 64 * LANES).collect();
     for points in points.chunks(LANES) {
@@ -252,7 +254,7 @@ fn same_bits_for_any_number_of_threads() {
 }
 
 #[test]
-fn band_ends_the_distances() {
+fn distances_are_clamped_to_the_band() {
     let mesh = bumpy();
     let all = field(&mesh, 24, Padding::Reach(0.4));
     let options =
@@ -263,7 +265,8 @@ fn band_ends_the_distances() {
         assert!((f64::from(within) - f64::from(all).clamp(-0.3, 0.3)).abs() <= band.sample_error());
     }
     assert_eq!(band.reach(), 0.3 - 2.0 * band.grid().cell);
-    // A kink fades from one node to the next by 2 − √3, here over at least two: 0.07 of half the kink, a cell.
+    // A kink decays by a factor of 2 − √3 per node, over at least two nodes: 0.07 of half the kink
+    // of one cell.
     for point in scattered(band.grid().bounds(), 20_000) {
         let (expected, found) = (all.sample(point).0, band.sample(point).0);
         if expected.abs() < band.reach() && found.is_finite() {
@@ -273,7 +276,7 @@ fn band_ends_the_distances() {
 }
 
 #[test]
-fn open_mesh_is_sampled_too() {
+fn samples_an_open_mesh() {
     let mut mesh = icosphere(1.0, 3);
     mesh.triangles.retain(|t| t.iter().all(|&v| mesh.positions[v as usize].z < 0.3));
     let field = field(&mesh, 24, Padding::Reach(0.3));
@@ -283,7 +286,7 @@ fn open_mesh_is_sampled_too() {
 }
 
 #[test]
-fn bad_input_is_named() {
+fn rejects_bad_input() {
     let mesh = icosphere(1.0, 1);
     let with =
         |mesh: &TriMesh, options: DistanceFieldOptions| DistanceField::new(mesh, &options, &NoProgress).unwrap_err();
@@ -355,7 +358,7 @@ fn stops_in_every_stage_when_cancelled() {
 }
 
 #[test]
-fn degenerate_meshes_give_numbers() {
+fn degenerate_meshes_have_finite_distances() {
     let flat = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2], [0, 2, 1]]);
     let needle = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::X * 0.5], vec![[0, 1, 2], [0, 0, 1], [1, 1, 1]]);
     for mesh in [flat, needle] {

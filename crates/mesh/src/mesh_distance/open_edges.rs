@@ -1,14 +1,16 @@
-/// Directed edges that are left over when opposite directions cancel, each as often as it is left: none if every edge is used as
-/// often in one direction as in the other, and then winding numbers are whole off the surface. Takes linear time.
+/// Returns the directed edges that remain after opposite directions cancel, with multiplicity.
+/// Takes linear time.
 ///
-/// At every vertex as many of them arrive as leave.
+/// The result is empty if every edge is used equally often in both directions. Then winding numbers
+/// are integers off the surface. At every vertex, equally many of these edges begin and end.
 ///
 /// # Panics
 /// If an index is not below `vertices`.
 pub(crate) fn open_edges(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2]> {
     let directed =
         || (triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])).filter(|[from, to]| from != to);
-    // The larger ends of edges in buckets by their smaller vertex: forward ones from the front, backward ones from the back.
+    // A bucket per vertex collects the larger ends of the edges whose smaller end it is: forward
+    // edges from the front, backward edges from the back.
     let mut starts = vec![0_u32; vertices + 1];
     for [from, to] in directed() {
         starts[from.min(to) as usize + 1] += 1;
@@ -31,6 +33,7 @@ pub(crate) fn open_edges(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2
     }
     let mut open = Vec::new();
     for (vertex, &middle) in fronts.iter().enumerate() {
+        // Sort both halves of each bucket. Edges without an opposite appear in only one of them.
         let (start, end) = (starts[vertex] as usize, starts[vertex + 1] as usize);
         let (forward, backward) = bucketed[start..end].split_at_mut(middle as usize - start);
         forward.sort_unstable();
@@ -42,7 +45,8 @@ pub(crate) fn open_edges(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2
     open
 }
 
-/// The edges between a vertex and larger ones, given in ascending order, that have no opposite.
+/// Adds the edges between `vertex` and larger vertices that have no opposite. Both lists are
+/// sorted.
 fn push_unpaired(open: &mut Vec<[u32; 2]>, vertex: u32, mut forward: &[u32], mut backward: &[u32]) {
     loop {
         match (forward.first(), backward.first()) {
@@ -65,11 +69,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_left_of_the_edges() {
+    fn finds_edges_without_an_opposite() {
         let closed = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]];
         assert_eq!(open_edges(&closed, 4), [[0; 2]; 0]);
         assert_eq!(open_edges(&closed[1..], 4), [[1, 0], [0, 2], [2, 1]]);
-        // Twice the same triangle; edges without length do not count.
+        // The same triangle twice. Edges of length zero do not count.
         assert_eq!(
             open_edges(&[[2, 1, 0], [2, 1, 0], [1, 1, 3]], 4),
             [[1, 0], [1, 0], [0, 2], [0, 2], [2, 1], [2, 1], [1, 3], [3, 1]][..6]

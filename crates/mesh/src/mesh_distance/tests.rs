@@ -12,7 +12,7 @@ fn distance(mesh: &TriMesh) -> MeshDistance {
     MeshDistance::new(mesh, &NoProgress).unwrap()
 }
 
-/// Spikes and dents: sharp edges of both kinds.
+/// A shape with spikes and dents: convex and concave sharp edges.
 fn spiky() -> TriMesh {
     let mut mesh = icosphere(1.0, 2);
     for (i, p) in mesh.positions.iter_mut().enumerate() {
@@ -27,7 +27,7 @@ fn point() -> impl Strategy<Value = DVec3> {
 
 proptest! {
     #[test]
-    fn both_ways_and_another_library_agree(p in point()) {
+    fn pseudo_normals_agree_with_winding_numbers_and_parry(p in point()) {
         let mesh = spiky();
         let fast = distance(&mesh);
         prop_assert!(fast.uses_pseudo_normals());
@@ -41,14 +41,15 @@ proptest! {
         prop_assert_eq!(value < 0.0, projection.is_inside);
         // Rounding of coordinates of size 1.5.
         prop_assert!((value.abs() - p.distance(dvec3(projection.point.x, projection.point.y, projection.point.z))).abs() < 1e-14);
-        // Down the gradient lies the nearest point.
+        // The nearest point is the step down the gradient.
         prop_assert!(fast.sample(p - value * gradient).0.abs() < 1e-14);
     }
 
     #[test]
     fn triangles_without_area_do_not_flip_signs(p in point(), edge in 0..30_usize) {
-        // A vertex in the middle of an edge, on one side used by two halves, on the other by a triangle of no area: nearest
-        // points on that edge belong to several features with unlike normals.
+        // A vertex in the middle of an edge. One side uses its two halves, the other a triangle
+        // without area. So nearest points on that edge belong to several features with different
+        // normals.
         let mut mesh = box_mesh(dvec3(1.0, 0.05, 0.6), [1, 1, 1]);
         let [a, b, c] = mesh.triangles[edge % mesh.triangles.len()];
         let middle = mesh.positions.len() as u32;
@@ -64,7 +65,7 @@ proptest! {
 
     #[test]
     fn thin_walls_keep_their_signs(x in -1.2..1.2_f64, y in -1.0..1.0_f64, z in -0.8..0.8_f64) {
-        // A plate so thin that both faces are nearly equally near from everywhere.
+        // A plate so thin that both faces are almost equally near from everywhere.
         let half = dvec3(1.0, 1e-9, 0.6);
         let distance = distance(&box_mesh(half, [3, 1, 2]));
         for p in [dvec3(x, y, z), dvec3(x, 1e-9 * y, z), dvec3(x, 3e-9 * y, z)] {
@@ -74,7 +75,7 @@ proptest! {
 }
 
 #[test]
-fn on_a_vertex_edge_or_face_the_distance_is_zero() {
+fn distance_is_zero_on_vertices_edges_and_faces() {
     let mesh = spiky();
     let distance = distance(&mesh);
     for t in 0..mesh.triangles.len() {
@@ -87,7 +88,7 @@ fn on_a_vertex_edge_or_face_the_distance_is_zero() {
 }
 
 #[test]
-fn crossing_nested_and_open_meshes_go_by_winding_number() {
+fn crossing_nested_and_open_meshes_use_the_winding_number() {
     let sphere = icosphere(1.0, 2);
     let count = sphere.positions.len() as u32;
     let twice = |map: &dyn Fn(DVec3) -> DVec3| {
@@ -100,7 +101,8 @@ fn crossing_nested_and_open_meshes_go_by_winding_number() {
     for mesh in [twice(&|p| p + DVec3::X), twice(&|p| 0.5 * p), open] {
         let distance = distance(&mesh);
         assert!(!distance.uses_pseudo_normals());
-        // Beside the inner surface of the nested pair, the nearest feature would say outside.
+        // Next to the inner surface of the nested pair, the nearest feature alone would say
+        // outside.
         assert!(distance.sample(dvec3(0.55, 0.0, 0.0)).0 < 0.0);
         assert!(distance.sample(dvec3(-1.1, 0.0, 0.0)).0 > 0.0);
     }
@@ -114,7 +116,7 @@ fn centroid_is_that_of_the_volume_or_the_area() {
     mesh.positions.iter_mut().for_each(|p| *p += shift);
     // Rounding of coordinates of 3e6.
     assert!(distance(&mesh).centroid().distance(shift) < 1e-9);
-    // Without the face at z = 0.25: areas and their centroids by hand.
+    // Without the face at z = 0.25: areas and their centroids computed by hand.
     mesh.triangles.retain(|t| !t.iter().all(|&v| mesh.positions[v as usize].z == shift.z + 0.25));
     let (bottom, sides) = (2.0 * 1.0, 2.0 * (2.0 + 1.0) * 0.5);
     let height = -0.25 * bottom / (bottom + sides);

@@ -1,22 +1,24 @@
 //! A hierarchy of boxes that is searched against itself.
 //!
-//! Triangles are put in the order of a space-filling curve (G. Morton, *A Computer Oriented Geodetic Data Base and a New
-//! Technique in File Sequencing*, 1966), and every eight that follow each other share a box, as do every eight of those, and so
-//! on. So nodes need no pointers, and one box is held against eight at once.
+//! Triangles are sorted along a space-filling curve (G. Morton, *A Computer Oriented Geodetic Data
+//! Base and a New Technique in File Sequencing*, 1966). Every eight consecutive triangles have a
+//! common box, and so do every eight consecutive boxes, level by level. So nodes need no pointers,
+//! and one box is compared with eight at once.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::bvh::UnitFrame;
-use crate::extremes::{greater, lesser};
+use crate::extremes::{max, min};
 use crate::morton_order::along_morton_curve;
 
-/// Boxes that share a box of the next level.
+/// Number of boxes per box of the next level.
 pub(super) const WIDTH: usize = 8;
 
-/// Eight boxes; those that are not there overlap nothing.
+/// Eight boxes. Unused boxes overlap nothing.
 ///
-/// Corners are rounded to the nearest number, which keeps the order of coordinates: boxes that are apart once rounded are apart.
+/// Corners are rounded to the nearest number, which preserves the order of coordinates. So boxes
+/// that are disjoint after rounding are disjoint.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub(super) struct Boxes {
@@ -24,23 +26,24 @@ pub(super) struct Boxes {
     max: [[f32; WIDTH]; 3],
 }
 
-/// One box.
+/// A single box.
 #[derive(Debug, Clone, Copy)]
 struct OneBox {
     min: [f32; 3],
     max: [f32; 3],
 }
 
-/// The hierarchy.
+/// A hierarchy of boxes with eight children per node.
 #[derive(Debug)]
 pub(super) struct BoxTree {
-    /// The triangle at each place along the curve.
+    /// The triangle in each slot along the curve.
     pub(super) order: Vec<u32>,
-    /// Boxes of the triangles, eight by eight, then the boxes around those, up to a level of one.
+    /// Boxes of the triangles in groups of eight, then the boxes around these, up to a level of
+    /// one.
     levels: Vec<Vec<Boxes>>,
 }
 
-/// Two nodes of one level whose boxes overlap, the first not behind the second; they may be one and the same.
+/// Two nodes of one level whose boxes overlap, in ascending order. Both may be the same node.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NodePair {
     level: u32,
@@ -48,12 +51,12 @@ pub(super) struct NodePair {
 }
 
 impl BoxTree {
-    /// The hierarchy of the triangles over these finite points; there is at least one.
+    /// Builds the hierarchy of at least one triangle over finite points.
     pub(super) fn new(points: &[DVec3], triangles: &[[u32; 3]], frame: &UnitFrame) -> Self {
         let rounded: Vec<[f32; 3]> = points
             .par_iter()
             .map(|&point| {
-                let point = frame.inward(point);
+                let point = frame.to_unit(point);
                 [point.x as f32, point.y as f32, point.z as f32]
             })
             .collect();
@@ -61,8 +64,7 @@ impl BoxTree {
             let [a, b, c] = triangles[triangle as usize];
             OneBox::of([rounded[a as usize], rounded[b as usize], rounded[c as usize]])
         };
-        let order =
-            along_morton_curve(&rounded, triangles).into_iter().map(|placed| placed.triangle).collect::<Vec<_>>();
+        let order = along_morton_curve(&rounded, triangles).into_iter().map(|key| key.triangle).collect::<Vec<_>>();
         let first =
             order.par_chunks(WIDTH).map(|eight| Boxes::of(eight.iter().map(|&triangle| box_of(triangle)))).collect();
         let mut levels: Vec<Vec<Boxes>> = vec![first];
@@ -72,10 +74,11 @@ impl BoxTree {
         Self { order, levels }
     }
 
-    /// Pairs of nodes that hold all pairs of triangles whose boxes overlap: at least `wanted`, if there are as many.
-    pub(super) fn node_pairs(&self, wanted: usize) -> Vec<NodePair> {
+    /// Returns pairs of nodes that cover all pairs of triangles with overlapping boxes. Continues
+    /// until there are `target` pairs, if there are as many.
+    pub(super) fn node_pairs(&self, target: usize) -> Vec<NodePair> {
         let mut pairs = vec![NodePair { level: self.levels.len() as u32 - 1, nodes: [0, 0] }];
-        while pairs.len() < wanted && pairs[0].level > 0 {
+        while pairs.len() < target && pairs[0].level > 0 {
             let finer = |pair: NodePair| {
                 let mut below = Vec::new();
                 self.descend(pair, |nodes| below.push(NodePair { level: pair.level - 1, nodes }));
@@ -89,25 +92,25 @@ impl BoxTree {
         pairs
     }
 
-    /// Takes pairs of nodes from the `stack` and lists the places of the pairs of triangles below them whose boxes overlap, until
-    /// there are `wanted` or a few more. False when there were none left.
+    /// Takes node pairs from the `stack` and appends the slots of triangle pairs below them whose
+    /// boxes overlap, until there are `target` or a few more. Returns false if there are none.
     #[inline(always)]
-    pub(super) fn overlapping_places(
+    pub(super) fn overlapping_pairs(
         &self,
-        wanted: usize,
+        target: usize,
         stack: &mut Vec<NodePair>,
-        places: &mut Vec<[u32; 2]>,
+        slots: &mut Vec<[u32; 2]>,
     ) -> bool {
         while let Some(pair) = stack.pop() {
             match pair.level.checked_sub(1) {
-                None => self.descend(pair, |found| places.push(found)),
+                None => self.descend(pair, |found| slots.push(found)),
                 Some(level) => self.descend(pair, |nodes| stack.push(NodePair { level, nodes })),
             }
-            if places.len() >= wanted {
+            if slots.len() >= target {
                 break;
             }
         }
-        !places.is_empty()
+        !slots.is_empty()
     }
 
     /// Calls `found` for the pairs of children of two nodes whose boxes overlap.
@@ -118,7 +121,7 @@ impl BoxTree {
         let [first_number, second_number] = [WIDTH as u32 * a, WIDTH as u32 * b];
         if a == b {
             for one in 0..WIDTH as u32 {
-                // A triangle makes no pair with itself, a node does.
+                // A node forms a pair with itself, but a triangle does not.
                 let later = ALL << (8 * one) << (if level == 0 { 8 } else { 0 });
                 let mut hits = second.overlaps(&first.get(one)) & later;
                 while hits != 0 {
@@ -130,6 +133,7 @@ impl BoxTree {
         }
         let above = &self.levels[level as usize + 1];
         let around = |node: u32| above[node as usize / WIDTH].get(node % WIDTH as u32);
+        // Skip children of one node that do not overlap the box around the other.
         let mut ones = first.overlaps(&around(b));
         let others = second.overlaps(&around(a));
         while ones != 0 {
@@ -144,11 +148,11 @@ impl BoxTree {
     }
 }
 
-/// The least significant bit of every byte: all of eight boxes.
+/// The least significant bit of every byte, which selects all eight boxes.
 const ALL: u64 = 0x0101_0101_0101_0101;
 
 impl Boxes {
-    /// Up to eight boxes.
+    /// Packs up to eight boxes.
     fn of(boxes: impl Iterator<Item = OneBox>) -> Self {
         let mut eight = Self { min: [[f32::INFINITY; WIDTH]; 3], max: [[f32::NEG_INFINITY; WIDTH]; 3] };
         for (lane, one) in boxes.enumerate() {
@@ -168,15 +172,15 @@ impl Boxes {
 
     /// The box around all eight.
     fn union(&self) -> OneBox {
-        let smallest = |numbers: &[f32; WIDTH]| numbers.iter().copied().fold(f32::INFINITY, lesser);
-        let largest = |numbers: &[f32; WIDTH]| numbers.iter().copied().fold(f32::NEG_INFINITY, greater);
+        let smallest = |numbers: &[f32; WIDTH]| numbers.iter().copied().fold(f32::INFINITY, min);
+        let largest = |numbers: &[f32; WIDTH]| numbers.iter().copied().fold(f32::NEG_INFINITY, max);
         OneBox {
             min: [smallest(&self.min[0]), smallest(&self.min[1]), smallest(&self.min[2])],
             max: [largest(&self.max[0]), largest(&self.max[1]), largest(&self.max[2])],
         }
     }
 
-    /// Which of the eight overlap `one`: the least significant bit of a byte each.
+    /// Tests the eight boxes against `one`. The result is the least significant bit of each byte.
     #[inline(always)]
     fn overlaps(&self, one: &OneBox) -> u64 {
         let mut hits = [0_u8; WIDTH];
@@ -203,8 +207,8 @@ impl OneBox {
     fn union(self, other: Self) -> Self {
         let (a, b) = (self, other);
         Self {
-            min: [lesser(a.min[0], b.min[0]), lesser(a.min[1], b.min[1]), lesser(a.min[2], b.min[2])],
-            max: [greater(a.max[0], b.max[0]), greater(a.max[1], b.max[1]), greater(a.max[2], b.max[2])],
+            min: [min(a.min[0], b.min[0]), min(a.min[1], b.min[1]), min(a.min[2], b.min[2])],
+            max: [max(a.max[0], b.max[0]), max(a.max[1], b.max[1]), max(a.max[2], b.max[2])],
         }
     }
 }

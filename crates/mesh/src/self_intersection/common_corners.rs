@@ -1,27 +1,27 @@
-//! Which corners two triangles have in common.
+//! Common corners of two triangles.
 
 /// The common corners of two triangles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CommonCorners {
-    /// Their number; 3 also stands for triangles without area.
+    /// Number of common corners. It is 3 also for triangles with a repeated corner.
     pub(super) count: u8,
-    /// Corners of the first triangle, those in common first.
+    /// Corners of the first triangle, common ones first.
     pub(super) first: [u8; 3],
-    /// Corners of the second, the common ones in the same order.
+    /// Corners of the second triangle, common ones in the same order.
     pub(super) second: [u8; 3],
 }
 
 impl CommonCorners {
     #[inline(always)]
     pub(super) fn of<T: PartialEq>(first: &[T; 3], second: &[T; 3]) -> &'static Self {
-        // Bit 3 i + j says that corner i of the first is corner j of the second.
+        // Bit 3 i + j is set if corner i of the first triangle equals corner j of the second.
         let mut same = 0_usize;
         for i in 0..3 {
             for j in 0..3 {
                 same |= usize::from(first[i] == second[j]) << (3 * i + j);
             }
         }
-        // Looked up, since no processor guesses the branches that would find it.
+        // A table instead of branches, which a processor could not predict.
         &TABLE[same & (TABLE.len() - 1)]
     }
 

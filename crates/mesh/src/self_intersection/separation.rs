@@ -1,34 +1,37 @@
-//! A fast proof that two triangles do not cross: a plane between them.
+//! A fast proof that two triangles are disjoint: a separating plane.
 //!
-//! Sixteen pairs at a time in `f32`, relative to a corner of the first triangle, and with a bound on the rounding. What it leaves
-//! open is for exact predicates; so it decides nothing but time.
+//! It handles sixteen pairs at a time in `f32`, relative to a corner of the first triangle, with a
+//! bound on the rounding error. Exact predicates decide the pairs that it leaves open. So it
+//! affects only speed, not results.
 
 use glam::DVec3;
 
-use crate::extremes::{greater, lesser};
+use crate::extremes::{max, min};
 
-/// Pairs that are looked at together.
+/// Number of pairs in a block.
 pub(super) const LANES: usize = 16;
 
 type Lanes = [f32; LANES];
 
-/// Vectors of the pairs, component by component.
+/// One vector per pair, component by component.
 type Vectors = [Lanes; 3];
 
-/// Relative bound on the error of a projection onto a given direction, and of the volume of three vectors, both in the sizes of
-/// their terms. A coordinate, each product and each sum round once, so that there are at most 11 roundings of 2⁻²⁴. Larger sends
-/// more pairs to the exact predicates; smaller could take touching triangles for separate ones.
+/// Relative bound on the error of a projection onto a given direction, and of the volume spanned by
+/// three vectors, both relative to the sizes of their terms. Each coordinate, product and sum is
+/// rounded once, so there are at most 11 roundings of 2⁻²⁴. Larger: more pairs go to the exact
+/// predicates. Smaller: touching triangles could be considered disjoint.
 const ROUNDING: f32 = 16.0 / (1 << 24) as f32;
 
-/// What underflow may take from a sum of products. Larger sends tiny triangles to the exact predicates; smaller is no bound.
+/// Bound on the loss of a sum of products by underflow. Larger: tiny triangles go to the exact
+/// predicates. Smaller: it would not be a bound.
 const UNDERFLOW: f32 = 1e-36;
 
-/// Pairs of triangles that share the same number of corners, corners that are shared first and in the same order, relative to
-/// the first corner of the first triangle.
+/// Pairs of triangles with the same number of common corners. Common corners are first and in the
+/// same order. All vectors are relative to the first corner of the first triangle.
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
 pub(super) struct PairBlock {
-    /// Of the first triangle, the second and third corner; of the second, all.
+    /// The second and third corner of the first triangle, then all corners of the second.
     vectors: [Vectors; 5],
     count: usize,
 }
@@ -36,10 +39,11 @@ pub(super) struct PairBlock {
 impl PairBlock {
     pub(super) const EMPTY: Self = Self { vectors: [[[0.0; LANES]; 3]; 5], count: 0 };
 
-    /// Adds a pair: the first corner of the first triangle, and the others of both. Lengths should be at most a few.
+    /// Adds a pair: the first corner of the first triangle, and the other five corners. Lengths
+    /// should be of order one.
     ///
     /// # Panics
-    /// If there are [`LANES`] already.
+    /// If the block is full.
     #[inline(always)]
     pub(super) fn push(&mut self, origin: &DVec3, others: [&DVec3; 5]) {
         let lane = self.count;
@@ -60,8 +64,9 @@ impl PairBlock {
         self.count = 0;
     }
 
-    /// For pairs without common corners, by lane, whether they are certainly apart: a direction among the normals and those
-    /// within the triangles' planes across their edges separates them.
+    /// For pairs without common corners, returns by lane whether they are certainly disjoint.
+    /// Candidate directions are the two normals and, within the plane of each triangle, the normals
+    /// of its edges.
     #[inline(always)]
     pub(super) fn are_apart(&self) -> [bool; LANES] {
         let [a1, a2, b0, b1, b2] = &self.vectors;
@@ -84,33 +89,36 @@ impl PairBlock {
             let [on_a1, on_a2] = [dot(direction, a1), dot(direction, a2)];
             let [on_b0, on_b1, on_b2] = [dot(direction, b0), dot(direction, b1), dot(direction, b2)];
             let margin = margin(direction, &size);
+            // Intervals of both projections. The first corner of the first triangle projects to
+            // zero.
             for i in 0..LANES {
-                let low_a = lesser(lesser(on_a1[i], on_a2[i]), 0.0);
-                let high_a = greater(greater(on_a1[i], on_a2[i]), 0.0);
-                let low_b = lesser(lesser(on_b0[i], on_b1[i]), on_b2[i]);
-                let high_b = greater(greater(on_b0[i], on_b1[i]), on_b2[i]);
+                let low_a = min(min(on_a1[i], on_a2[i]), 0.0);
+                let high_a = max(max(on_a1[i], on_a2[i]), 0.0);
+                let low_b = min(min(on_b0[i], on_b1[i]), on_b2[i]);
+                let high_b = max(max(on_b0[i], on_b1[i]), on_b2[i]);
                 apart[i] |= (low_b - high_a > margin[i]) | (low_a - high_b > margin[i]);
             }
         }
         apart
     }
 
-    /// For pairs with one common corner, by lane, whether they certainly have nothing else in common: a plane through the
-    /// corner has one of them strictly on one side, the other on the other side or on itself.
+    /// For pairs with one common corner, returns by lane whether they certainly intersect only in
+    /// it. A plane through the corner has one triangle strictly on one side, and the other on the
+    /// other side or on the plane.
     #[inline(always)]
     pub(super) fn meet_in_corner(&self) -> [bool; LANES] {
         let [a1, a2, _, b1, b2] = &self.vectors;
         let size = sizes(&self.vectors);
         let (normal_a, normal_b) = (cross(a1, a2), cross(b1, b2));
         let mut apart = [false; LANES];
-        // Planes of the triangles.
+        // The planes of both triangles.
         for (plane, x, y) in [(Plane::along(a1, a2), b1, b2), (Plane::along(b1, b2), a1, a2)] {
             let (x, y) = (plane.sides(x), plane.sides(y));
             for i in 0..LANES {
                 apart[i] |= (x.left[i] & y.left[i]) | (x.right[i] & y.right[i]);
             }
         }
-        // Planes through an edge and across its triangle.
+        // Planes through an edge and perpendicular to its triangle.
         for (edge, normal, third, x, y) in [
             (a1, &normal_a, a2, b1, b2),
             (a2, &normal_a, a1, b1, b2),
@@ -123,19 +131,19 @@ impl PairBlock {
                 apart[i] |= (third.left[i] & x.right[i] & y.right[i]) | (third.right[i] & x.left[i] & y.left[i]);
             }
         }
-        // The plane between opposite triangles.
+        // The plane between triangles on opposite sides of the corner.
         let direction = minus(&plus(a1, a2), &plus(b1, b2));
         let [a1, a2, b1, b2] = [dot(&direction, a1), dot(&direction, a2), dot(&direction, b1), dot(&direction, b2)];
         let margin = margin(&direction, &size);
         for i in 0..LANES {
-            let (low_a, high_b) = (lesser(a1[i], a2[i]), greater(b1[i], b2[i]));
+            let (low_a, high_b) = (min(a1[i], a2[i]), max(b1[i], b2[i]));
             apart[i] |= (low_a > margin[i]) & (high_b < -margin[i]);
         }
         apart
     }
 
-    /// For pairs with a common edge, by lane, whether they certainly have nothing else in common: they do not lie in one plane,
-    /// or lie on opposite sides of the edge.
+    /// For pairs with a common edge, returns by lane whether they certainly intersect only in it:
+    /// they are not in one plane, or they are on opposite sides of the edge.
     #[inline(always)]
     pub(super) fn meet_in_edge(&self) -> [bool; LANES] {
         let [edge, a, _, _, b] = &self.vectors;
@@ -150,7 +158,7 @@ impl PairBlock {
     }
 }
 
-/// Planes through the origin along two vectors.
+/// Planes through the origin spanned by two vectors.
 #[derive(Debug)]
 struct Plane {
     normal: Vectors,
@@ -158,7 +166,7 @@ struct Plane {
     terms: Vectors,
 }
 
-/// Which vectors point certainly to one or the other side of a plane.
+/// Vectors that are certainly on one side of a plane.
 #[derive(Debug)]
 struct Sides {
     left: [bool; LANES],
@@ -197,7 +205,7 @@ impl Plane {
     }
 }
 
-/// Bounds on the error of the difference between projections of two vectors of these `sizes` onto a direction.
+/// Bound on the error of the difference between the projections of two vectors of these `sizes`.
 #[inline(always)]
 fn margin(direction: &Vectors, sizes: &Lanes) -> Lanes {
     let mut margin = [0.0; LANES];
@@ -208,13 +216,13 @@ fn margin(direction: &Vectors, sizes: &Lanes) -> Lanes {
     margin
 }
 
-/// The largest component in size of any of the vectors.
+/// Returns the largest absolute component of the vectors.
 #[inline(always)]
 fn sizes(vectors: &[Vectors; 5]) -> Lanes {
     let mut size = [0.0; LANES];
     for component in vectors.iter().flatten() {
         for i in 0..LANES {
-            size[i] = greater(component[i].abs(), size[i]);
+            size[i] = max(component[i].abs(), size[i]);
         }
     }
     size

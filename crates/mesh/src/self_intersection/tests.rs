@@ -31,17 +31,17 @@ fn contacts_of_separate_triangles_count() {
 }
 
 #[test]
-fn triangles_over_an_edge_count_where_they_fold_over() {
+fn triangles_with_a_common_edge_intersect_if_folded() {
     let fold = |apex: [f64; 3]| !pairs(&[FLAT[0], FLAT[1], FLAT[2], apex], &[[0, 1, 2], [1, 0, 3]]).is_empty();
     assert!(fold([0.3, 1.0, 0.0]));
     assert!(fold([5.0, 5.0, 0.0]));
     assert!(!fold([0.3, -1.0, 0.0]));
-    // Folded back almost onto the other triangle, yet not in its plane.
+    // Folded back almost onto the other triangle, but not in its plane.
     assert!(!fold([0.3, 1.0, 1e-17]));
 }
 
 #[test]
-fn triangles_at_a_vertex_count_where_they_meet_elsewhere() {
+fn triangles_with_a_common_vertex_intersect_if_they_meet_elsewhere() {
     let fan = |p: [f64; 3], q: [f64; 3]| !pairs(&[FLAT[0], FLAT[1], FLAT[2], p, q], &[[0, 1, 2], [0, 3, 4]]).is_empty();
     assert!(fan([1.0, 0.5, -1.0], [0.5, 1.0, 1.0]), "piercing");
     assert!(fan([0.5, 0.1, 0.0], [0.1, 0.5, 0.0]), "inside, in one plane");
@@ -58,13 +58,13 @@ fn split_vertices_count_as_one() {
 }
 
 #[test]
-fn triangles_without_area_are_left_out() {
+fn ignores_triangles_without_area() {
     assert!(!two(FLAT, [[0.5, 0.5, -1.0], [0.5, 0.5, 1.0], [0.5, 0.5, 3.0]]));
     assert!(!two(FLAT, [[0.5, 0.5, -1.0], [0.5, 0.5, 1.0], [0.5, 0.5, 1.0]]));
 }
 
 #[test]
-fn interpenetrating_spheres_cross_in_a_band() {
+fn interpenetrating_spheres_intersect_in_a_band() {
     let sphere = icosphere(1.0, 3);
     assert!(SelfIntersections::of(&sphere, &NoProgress).unwrap().is_empty());
     let shift = dvec3(0.7, 0.1, 0.05);
@@ -75,8 +75,8 @@ fn interpenetrating_spheres_cross_in_a_band() {
     );
     let found = SelfIntersections::of(&mesh, &NoProgress).unwrap();
 
-    // Slow second implementation: all pairs, with distances by another library. A pair nearer than its rounding would be
-    // undecided; there is none.
+    // Slow reference: all pairs, with distances by another library. A pair nearer than the rounding
+    // of that library would be undecided, but does not occur.
     let triangle = |t: usize| {
         let [a, b, c] = mesh.corners(t).map(|p| Vector::new(p.x, p.y, p.z));
         Triangle::new(a, b, c)
@@ -97,7 +97,8 @@ fn interpenetrating_spheres_cross_in_a_band() {
     assert!(expected.len() > 50);
     assert_eq!(found.pairs(), expected);
 
-    // The band is about as wide as a triangle and as long as the circle in which the spheres meet.
+    // The band is about as wide as a triangle and as long as the intersection circle of the
+    // spheres.
     let circle = 2.0 * std::f64::consts::PI * (1.0 - 0.25 * shift.length_squared()).sqrt();
     let area = found.area(&mesh);
     assert!(area > 0.05 * circle && area < 0.5 * circle, "{area}");
@@ -134,7 +135,7 @@ fn stops_when_cancelled() {
 proptest! {
     #[test]
     fn agrees_with_exact_integers(coordinates in prop::array::uniform18(-2..=2_i64)) {
-        // On a small lattice contacts of every kind are common, and determinants of integers are exact.
+        // On a small lattice all kinds of contact are common, and integer determinants are exact.
         let corner = |i: usize| [coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]];
         let triangles = [[corner(0), corner(1), corner(2)], [corner(3), corner(4), corner(5)]];
         let shares = triangles[0].iter().any(|p| triangles[1].contains(p));
@@ -145,8 +146,9 @@ proptest! {
     }
 }
 
-/// Triangles with integer corners, by separation instead of intersection: convex bodies have no common point exactly if a plane
-/// lies strictly between them, and for triangles one of a few normals will do.
+/// Reference for triangles with integer corners, by separation instead of intersection. Convex
+/// bodies are disjoint exactly if a plane is strictly between them, and for triangles a few normals
+/// suffice.
 mod integers {
     type Point = [i64; 3];
 

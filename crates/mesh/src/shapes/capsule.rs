@@ -5,6 +5,16 @@ use super::{ShapeError, inverse_or_zero, positive};
 use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
 
 /// All points within a radius of a segment on the z axis.
+///
+/// ```
+/// use glam::dvec3;
+/// use isochore_mesh::{Capsule, Distance};
+///
+/// let capsule = Capsule::new(0.5, 1.0)?;
+/// assert_eq!(capsule.sample(dvec3(2.0, 0.0, 0.5)).0, 1.5);
+/// assert_eq!(capsule.bounds().max, dvec3(0.5, 0.5, 1.5));
+/// # Ok::<(), isochore_mesh::ShapeError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capsule {
     radius: f64,
@@ -12,10 +22,11 @@ pub struct Capsule {
 }
 
 impl Capsule {
-    /// A capsule about the segment from z = −`half_length` to z = `half_length`; its ends reach `radius` farther. Model units.
+    /// A capsule around the segment from z = −`half_length` to z = `half_length`. Its caps extend
+    /// the length by `radius` at both ends. Model units.
     ///
     /// # Errors
-    /// [`ShapeError::NotPositive`].
+    /// [`ShapeError::NotPositive`] if a length is not positive and finite.
     pub fn new(radius: f64, half_length: f64) -> Result<Self, ShapeError> {
         Ok(Self {
             radius: positive("capsule", "radius", radius)?,
@@ -49,7 +60,7 @@ impl Distance for Capsule {
     }
 }
 
-/// [`Distance::sample_into`] in registers as wide as the machine has.
+/// [`Distance::sample_into`], compiled for several register widths.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn sample(shape: &Capsule, points: &PointBlock, out: &mut DistanceBlock) {
     for i in 0..LANES {

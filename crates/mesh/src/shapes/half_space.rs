@@ -3,7 +3,16 @@ use glam::DVec3;
 use super::ShapeError;
 use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
 
-/// Everything behind a plane: the only shape without end.
+/// All points behind a plane; the only unbounded shape.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_mesh::{Distance, HalfSpace};
+///
+/// let ground = HalfSpace::new(DVec3::ZERO, DVec3::Z)?;
+/// assert_eq!(ground.sample(DVec3::new(4.0, 2.0, -3.0)), (-3.0, DVec3::Z));
+/// # Ok::<(), isochore_mesh::ShapeError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfSpace {
     point: DVec3,
@@ -11,10 +20,12 @@ pub struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// What lies behind the plane through `point`, on the side that `normal`, of any length, points away from. Model units.
+    /// The half-space behind the plane through `point`. `normal` points away from it and may have
+    /// any length. Model units.
     ///
     /// # Errors
-    /// [`ShapeError::NoDirection`]; [`ShapeError::NotFinite`].
+    /// [`ShapeError::NotFinite`] if `point` is not finite; [`ShapeError::NoDirection`] if `normal`
+    /// is zero or not finite.
     pub fn new(point: DVec3, normal: DVec3) -> Result<Self, ShapeError> {
         if !point.is_finite() {
             return Err(ShapeError::NotFinite { shape: "half-space", what: "point" });
@@ -23,7 +34,7 @@ impl HalfSpace {
         Ok(Self { point, normal })
     }
 
-    /// Unit vector away from it.
+    /// Unit normal of the plane, which points away from the half-space.
     pub fn normal(&self) -> DVec3 {
         self.normal
     }
@@ -38,12 +49,12 @@ impl Distance for HalfSpace {
         }
     }
 
-    /// Everything: the plane has no end.
+    /// All of space, because the plane is unbounded.
     fn bounds(&self) -> Aabb {
         Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY }
     }
 
-    /// The point of the plane that it was made from, since its volume has no centroid.
+    /// The point passed to [`new`](HalfSpace::new), because an unbounded volume has no centroid.
     fn centroid(&self) -> DVec3 {
         self.point
     }

@@ -4,7 +4,17 @@ use multiversion::multiversion;
 use super::{ShapeError, inverse_or_zero, positive, sign_or_zero};
 use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
 
-/// A box with faces across the axes, its edges and corners rounded by a rolling ball.
+/// An axis-aligned box whose edges and corners are rounded by a rolling ball.
+///
+/// ```
+/// use glam::{DVec3, dvec3};
+/// use isochore_mesh::{Distance, RoundedBox};
+///
+/// let rounded = RoundedBox::new(dvec3(2.0, 1.0, 1.0), 0.25)?;
+/// assert_eq!(rounded.sample(DVec3::X * 3.0).0, 1.0);
+/// assert!(rounded.sample(dvec3(2.0, 1.0, 1.0)).0 > 0.0); // The corner is rounded off.
+/// # Ok::<(), isochore_mesh::ShapeError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoundedBox {
     half_extents: DVec3,
@@ -12,11 +22,13 @@ pub struct RoundedBox {
 }
 
 impl RoundedBox {
-    /// A box from −`half_extents` to `half_extents`. The rounding takes material away inside these extents: the faces stay where
-    /// they are, and edges get the radius `rounding`. Zero gives sharp edges. Model units.
+    /// A box from −`half_extents` to `half_extents`. Rounding removes material inside these
+    /// extents: the faces keep their positions, and edges get the radius `rounding`. Zero keeps
+    /// edges sharp. Model units.
     ///
     /// # Errors
-    /// [`ShapeError::NotPositive`]; [`ShapeError::Rounding`] if it is negative or larger than the smallest half extent.
+    /// [`ShapeError::NotPositive`] if a half extent is not positive and finite;
+    /// [`ShapeError::Rounding`] if `rounding` is negative or larger than the smallest half extent.
     pub fn new(half_extents: DVec3, rounding: f64) -> Result<Self, ShapeError> {
         for extent in half_extents.to_array() {
             positive("box", "half extents", extent)?;
@@ -28,7 +40,7 @@ impl RoundedBox {
         Ok(Self { half_extents, rounding })
     }
 
-    /// Half the edge lengths of the box before rounding, model units.
+    /// Half edge lengths of the box before rounding, model units.
     pub fn half_extents(&self) -> DVec3 {
         self.half_extents
     }
@@ -40,7 +52,7 @@ impl RoundedBox {
 }
 
 impl Distance for RoundedBox {
-    /// The distance to the inner box that the ball's center sweeps, less the ball's radius.
+    /// The distance to the inner box traced by the ball's center, minus the ball's radius.
     fn sample_into(&self, points: &PointBlock, out: &mut DistanceBlock) {
         sample(self, points, out);
     }
@@ -54,7 +66,7 @@ impl Distance for RoundedBox {
     }
 }
 
-/// [`Distance::sample_into`] in registers as wide as the machine has.
+/// [`Distance::sample_into`], compiled for several register widths.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn sample(shape: &RoundedBox, points: &PointBlock, out: &mut DistanceBlock) {
     let core = shape.half_extents - shape.rounding;
@@ -67,7 +79,8 @@ fn sample(shape: &RoundedBox, points: &PointBlock, out: &mut DistanceBlock) {
         out.value[i] = outside + nearest.min(0.0) - shape.rounding;
 
         let inverse = inverse_or_zero(outside);
-        // Inside the core the nearest face alone gives the direction; two faces equally near give none.
+        // Inside the core, the nearest face alone determines the direction. If two faces are
+        // equally near, the gradient is zero.
         let ties = f64::from(qx == nearest) + f64::from(qy == nearest) + f64::from(qz == nearest);
         let face = if outside == 0.0 && ties == 1.0 { 1.0 } else { 0.0 };
         let along = |q: f64, o: f64| o * inverse + if q == nearest { face } else { 0.0 };

@@ -4,17 +4,27 @@ use multiversion::multiversion;
 use super::{ShapeError, inverse_or_zero, positive};
 use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
 
-/// A ball about the origin.
+/// A ball centered at the origin.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_mesh::{Distance, Sphere};
+///
+/// let sphere = Sphere::new(2.0)?;
+/// assert_eq!(sphere.sample(DVec3::Z * 5.0), (3.0, DVec3::Z));
+/// assert!(Sphere::new(-1.0).is_err());
+/// # Ok::<(), isochore_mesh::ShapeError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sphere {
     radius: f64,
 }
 
 impl Sphere {
-    /// A sphere of the given radius, model units.
+    /// A ball of the given radius, model units.
     ///
     /// # Errors
-    /// [`ShapeError::NotPositive`].
+    /// [`ShapeError::NotPositive`] if the radius is not positive and finite.
     pub fn new(radius: f64) -> Result<Self, ShapeError> {
         Ok(Self { radius: positive("sphere", "radius", radius)? })
     }
@@ -39,7 +49,7 @@ impl Distance for Sphere {
     }
 }
 
-/// [`Distance::sample_into`] in registers as wide as the machine has.
+/// [`Distance::sample_into`], compiled for several register widths.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn sample(shape: &Sphere, points: &PointBlock, out: &mut DistanceBlock) {
     for i in 0..LANES {

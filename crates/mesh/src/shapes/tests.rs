@@ -1,4 +1,5 @@
-//! One suite that every shape joins: distances against brute force, gradients against finite differences, blocks against points.
+//! Tests of all shapes: distances against brute force, gradients against finite differences, blocks
+//! against single points.
 
 use std::f64::consts::{PI, TAU};
 
@@ -29,9 +30,10 @@ fn point() -> impl Strategy<Value = DVec3> {
 proptest! {
     #[test]
     fn gradient_is_the_difference_quotient(p in point()) {
-        // Central differences: truncation 1e-5² times a third derivative that is at most about 1/d² near medial surfaces, and
-        // rounding 1e-16/1e-5. Steps that straddle a medial surface are recognized by the one-sided quotients that disagree. Where
-        // the curvature jumps, as from a face to a rounded edge, the quotient is off by half as much as these disagree at most.
+        // Central differences. The truncation error is 1e-5² times a third derivative of at most
+        // about 1/d² near medial surfaces; the rounding error is 1e-16/1e-5. If a step straddles a
+        // medial surface, the one-sided quotients disagree. If the curvature jumps, as from a face
+        // to a rounded edge, the error of the quotient is at most half of that disagreement.
         const STEP: f64 = 1e-5;
         for shape in shapes() {
             let (value, gradient) = shape.sample(p);
@@ -53,8 +55,8 @@ proptest! {
 
     #[test]
     fn descent_along_the_gradient_lands_on_the_surface(p in point()) {
-        // Exact distances: the nearest surface point is p − d ∇d, from either side; 1e-9 allows for points next to a medial
-        // surface, where the direction is ill-conditioned.
+        // For exact distances the nearest surface point is p − d ∇d, from either side. 1e-9 allows
+        // for points next to a medial surface, for which the direction is ill-conditioned.
         for shape in shapes() {
             let (value, gradient) = shape.sample(p);
             let foot = p - value * gradient;
@@ -63,7 +65,7 @@ proptest! {
     }
 
     #[test]
-    fn lanes_do_not_see_each_other(points in prop::collection::vec(point(), LANES)) {
+    fn lanes_are_independent(points in prop::collection::vec(point(), LANES)) {
         for shape in shapes() {
             let mut block = DistanceBlock::FAR;
             shape.sample_into(&PointBlock::gather(&points), &mut block);
@@ -76,9 +78,10 @@ proptest! {
     }
 
     #[test]
-    fn ellipsoid_distance_is_the_least(p in point(), ratio in 1.0..50.0_f64) {
-        // No point of a dense set on the surface is nearer than the distance, and one is nearly as near: with spacing s on the
-        // surface, at most s² (1/2d + curvature) farther.
+    fn ellipsoid_distance_is_minimal(p in point(), ratio in 1.0..50.0_f64) {
+        // No point of a dense set on the surface is nearer than the distance, and one is almost as
+        // near: with a spacing of s on the surface, it is at most s² (1/2d + curvature) farther
+        // away.
         let radii = dvec3(0.5, 0.5 / ratio, 0.4);
         let shape = Ellipsoid::new(radii).unwrap();
         let distance = shape.sample(p).0.abs();
@@ -114,7 +117,7 @@ fn values_at_known_points() {
 }
 
 #[test]
-fn no_gradient_is_a_zero_gradient() {
+fn gradient_is_zero_where_it_is_undefined() {
     let cases: Vec<(Box<dyn Distance>, Vec<DVec3>)> = vec![
         (Box::new(Sphere::new(0.4).unwrap()), vec![DVec3::ZERO]),
         (Box::new(Capsule::new(0.15, 0.8).unwrap()), vec![DVec3::ZERO, dvec3(0.0, 0.0, 0.5)]),
@@ -150,8 +153,8 @@ fn ellipsoid_beyond_the_rim_of_its_medial_surface_has_a_gradient() {
 #[test]
 fn thin_ellipsoids_keep_their_precision() {
     let shape = Ellipsoid::new(dvec3(1.0, 1e-6, 1.0)).unwrap();
-    // Above the middle of a blade the distance is the height less the thickness; far more than that is lost if the root is
-    // measured from anywhere but the pole.
+    // Above the center of a blade, the distance is the height minus the thickness. Measuring the
+    // root from anywhere but the pole would lose far more than that.
     for height in [1e-9, 1e-6, 1e-3, 1.0] {
         let (value, gradient) = shape.sample(dvec3(0.0, height, 0.0));
         assert!((value - (height - 1e-6)).abs() < 1e-15 * height.max(1e-6), "{value}");
@@ -160,7 +163,7 @@ fn thin_ellipsoids_keep_their_precision() {
 }
 
 #[test]
-fn extreme_points_give_numbers() {
+fn extreme_points_have_finite_gradients() {
     for shape in shapes() {
         for scale in [1e-320, 1e-200, 1e-20, 1e20, 1e150, 1e300] {
             for p in [DVec3::ONE, DVec3::X, dvec3(0.0, -1.0, 1.0)] {
@@ -172,7 +175,7 @@ fn extreme_points_give_numbers() {
 }
 
 #[test]
-fn bad_lengths_are_named() {
+fn rejects_bad_lengths() {
     assert_eq!(Sphere::new(-1.0), Err(ShapeError::NotPositive { shape: "sphere", length: "radius", value: -1.0 }));
     assert!(matches!(Capsule::new(1.0, f64::NAN), Err(ShapeError::NotPositive { length: "half length", .. })));
     assert!(matches!(Torus::new(f64::INFINITY, 1.0), Err(ShapeError::NotPositive { length: "major radius", .. })));

@@ -5,6 +5,16 @@ use super::{ShapeError, inverse_or_zero, positive};
 use crate::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
 
 /// All points within the minor radius of a circle about the z axis.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_mesh::{Distance, Torus};
+///
+/// let torus = Torus::new(2.0, 0.5)?;
+/// assert_eq!(torus.sample(DVec3::X * 2.0).0, -0.5);
+/// assert!(Torus::new(1.0, 1.0).is_err());
+/// # Ok::<(), isochore_mesh::ShapeError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Torus {
     major: f64,
@@ -12,17 +22,19 @@ pub struct Torus {
 }
 
 impl Torus {
-    /// A torus around the circle of radius `major` in the plane z = 0; its tube has the radius `minor`. Model units.
+    /// A torus around the circle of radius `major` in the plane z = 0, with a tube of radius
+    /// `minor`. Model units.
     ///
     /// # Errors
-    /// [`ShapeError::NotPositive`]; [`ShapeError::TorusCrossesItself`] unless `minor < major`.
+    /// [`ShapeError::NotPositive`] if a radius is not positive and finite;
+    /// [`ShapeError::TorusCrossesItself`] unless `minor < major`.
     pub fn new(major: f64, minor: f64) -> Result<Self, ShapeError> {
         let torus =
             Self { major: positive("torus", "major radius", major)?, minor: positive("torus", "minor radius", minor)? };
         if minor < major { Ok(torus) } else { Err(ShapeError::TorusCrossesItself { major, minor }) }
     }
 
-    /// Radius of the circle in the middle of the tube, model units.
+    /// Radius of the center circle of the tube, model units.
     pub fn major(&self) -> f64 {
         self.major
     }
@@ -49,16 +61,16 @@ impl Distance for Torus {
     }
 }
 
-/// [`Distance::sample_into`] in registers as wide as the machine has.
+/// [`Distance::sample_into`], compiled for several register widths.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn sample(shape: &Torus, points: &PointBlock, out: &mut DistanceBlock) {
     for i in 0..LANES {
         let (x, y, z) = (points.x[i], points.y[i], points.z[i]);
-        // Where the squares overflow, finite, so that no product below is ∞ · 0.
+        // If the squares overflow, clamp to a finite number, so that no product below is ∞ · 0.
         let radius = (x * x + y * y).sqrt().min(f64::MAX);
         let off_circle = radius - shape.major;
         let length = (off_circle * off_circle + z * z).sqrt();
-        // On the axis every point of a circle is equally near: no gradient.
+        // On the axis all points of the circle are equally near, so the distance has no gradient.
         let inverse = if radius > 0.0 { inverse_or_zero(length) } else { 0.0 };
         let (radial, outward) = (off_circle * inverse, inverse_or_zero(radius));
         out.value[i] = length - shape.minor;

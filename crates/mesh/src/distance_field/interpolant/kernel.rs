@@ -1,4 +1,4 @@
-//! Value and gradient of a tricubic B-spline at 16 points abreast.
+//! Value and gradient of a tricubic B-spline for batches of 16 points.
 
 use super::columns::Columns;
 use crate::distance_field::{
@@ -8,27 +8,27 @@ use crate::distance_field::{
 };
 use crate::{DistanceBlock, LANES, PointBlock};
 
-/// Coefficients on a grid, and where it lies.
+/// The coefficients on a grid, and its geometry.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lattice<'a> {
-    pub(super) frame: &'a Frame,
+    pub(super) geometry: &'a GridGeometry,
     pub(super) coefficients: &'a [f32],
 }
 
-/// Where a grid lies.
+/// Position and dimensions of a grid.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(super) struct GridGeometry {
     origin: [f64; 3],
     cells_per_length: f64,
     dims: [u32; 3],
-    /// Along each axis the last cell that has all its neighbors; the first is number one.
+    /// The last cell along each axis that has all its neighbors. The first such cell is number one.
     last_cell: [f64; 3],
 }
 
-impl Frame {
-    /// None where no cell has all its neighbors.
+impl GridGeometry {
+    /// Returns `None` if no cell has all its neighbors.
     pub(super) fn new(grid: &Grid) -> Option<Self> {
-        // Grids have no more nodes than a `u32` can tell.
+        // Grids have fewer than 2³² nodes.
         grid.dims.iter().all(|&nodes| nodes >= 4).then(|| Self {
             origin: grid.origin.to_array(),
             cells_per_length: 1.0 / grid.cell,
@@ -38,36 +38,38 @@ impl Frame {
     }
 }
 
-/// Where points lie among the cells that have all their neighbors.
-struct Place<T> {
-    /// The first of the 4³ coefficients around each point.
+/// Stencils of points in the cells that have all their neighbors.
+struct Stencils<T> {
+    /// Index of the first of the 4³ coefficients around each point.
     starts: [u32; LANES],
-    /// The parts of the cell passed along x, y and z; not between zero and one where the point lies in no such cell.
-    passed: [[T; LANES]; 3],
+    /// Fraction of the cell along x, y and z. Outside 0 to 1 if the point is not in such a cell.
+    fraction: [[T; LANES]; 3],
 }
 
 impl Lattice<'_> {
-    /// Samples at `points`; infinite with no gradient beyond the cells that have all their neighbors.
+    /// Samples at `points`. Outside the cells that have all their neighbors, the value is infinite
+    /// and the gradient zero.
     ///
-    /// The sums run over differences to one coefficient of the stencil, so that rounding is relative to what the spline changes by
-    /// over a few cells, not to its value.
+    /// The sums are over differences to one coefficient of the stencil. So rounding errors are
+    /// relative to the change of the spline over a few cells, not to its value.
     ///
     /// # Safety
-    /// The machine must have what `C` asks for.
+    /// The machine must have the features that `C` requires.
     #[inline(always)]
     #[expect(unsafe_code, reason = "the rows are loaded without checks of their range")]
     pub(super) unsafe fn sample<T: Real, C: Columns>(&self, points: &PointBlock, out: &mut DistanceBlock) {
-        let [row, rows, layers] = self.frame.dims.map(|nodes| nodes as usize);
+        let [row, rows, layers] = self.geometry.dims.map(|nodes| nodes as usize);
         let layer = row * rows;
-        // `Place::of` keeps every stencil inside the lattice.
+        // `Stencils::of` keeps every stencil inside the lattice.
         assert!(self.coefficients.len() == layer * layers);
-        let Place { starts, passed } = Place::<T>::of(self.frame, points);
+        let Stencils { starts, fraction } = Stencils::<T>::of(self.geometry, points);
 
+        // Weights of the four coefficients along each axis, for the value and for the slope.
         let mut weight = [[[T::ZERO; LANES]; 4]; 3];
         let mut slope = [[[T::ZERO; LANES]; 4]; 3];
         for axis in 0..3 {
             for lane in 0..LANES {
-                let (weights, slopes) = (weights(passed[axis][lane]), weight_derivatives(passed[axis][lane]));
+                let (weights, slopes) = (weights(fraction[axis][lane]), weight_derivatives(fraction[axis][lane]));
                 for i in 0..4 {
                     weight[axis][i][lane] = weights[i];
                     slope[axis][i][lane] = slopes[i];
@@ -75,20 +77,23 @@ impl Lattice<'_> {
             }
         }
 
+        // Contract the stencil along x, then y, then z, with the derivatives beside the value.
         let mut reference = [0.0; LANES];
         let [mut value, mut along_x, mut along_y, mut along_z] = [[T::ZERO; LANES]; 4];
         for k in 0..4 {
             let [mut plane, mut plane_along_x, mut plane_along_y] = [[T::ZERO; LANES]; 3];
             for j in 0..4 {
                 let mut columns = [[0.0; LANES]; 4];
-                // SAFETY: rows j and layers k below 4 belong to the stencil; the caller sees to the machine.
+                // SAFETY: rows j and layers k below 4 belong to the stencil. The caller ensures the
+                // features.
                 unsafe { C::load(self.coefficients, &starts, k * layer + j * row, &mut columns) };
                 if (j, k) == (0, 0) {
                     reference = columns[1];
                 }
                 for lane in 0..LANES {
                     let [a, b, c, d] = [0, 1, 2, 3].map(|i| T::of_single(columns[i][lane]));
-                    // Weights sum to one, and their derivatives to zero: the second needs no product.
+                    // The weights sum to one, so b needs no product. The slopes sum to zero, so b
+                    // drops out.
                     let (a, c, d) = (a - b, c - b, d - b);
                     let dot = |w: &[[T; LANES]; 4]| a * w[0][lane] + (c * w[2][lane] + d * w[3][lane]);
                     let line = b - T::of_single(reference[lane]) + dot(&weight[0]);
@@ -106,10 +111,11 @@ impl Lattice<'_> {
             }
         }
 
+        // Points outside the lattice were computed with a clamped stencil; replace their results.
         for lane in 0..LANES {
             let is_within = |part: T| part >= T::ZERO && part <= T::of(1.0);
-            let is_inside = is_within(passed[0][lane]) & is_within(passed[1][lane]) & is_within(passed[2][lane]);
-            let scale = |slope: T| if is_inside { slope.to_f64() * self.frame.cells_per_length } else { 0.0 };
+            let is_inside = is_within(fraction[0][lane]) & is_within(fraction[1][lane]) & is_within(fraction[2][lane]);
+            let scale = |slope: T| if is_inside { slope.to_f64() * self.geometry.cells_per_length } else { 0.0 };
             let sum = f64::from(reference[lane]) + value[lane].to_f64();
             out.value[lane] = if is_inside { sum } else { f64::INFINITY };
             out.gradient.x[lane] = scale(along_x[lane]);
@@ -119,26 +125,27 @@ impl Lattice<'_> {
     }
 }
 
-impl<T: Real> Place<T> {
+impl<T: Real> Stencils<T> {
     #[inline(always)]
     #[expect(unsafe_code, reason = "a cast without checks")]
-    fn of(frame: &Frame, points: &PointBlock) -> Self {
-        let mut place = Self { starts: [0; LANES], passed: [[T::ZERO; LANES]; 3] };
+    fn of(geometry: &GridGeometry, points: &PointBlock) -> Self {
+        let mut stencils = Self { starts: [0; LANES], fraction: [[T::ZERO; LANES]; 3] };
         let mut stride = 1;
         for (axis, coordinates) in [&points.x, &points.y, &points.z].into_iter().enumerate() {
-            let (origin, last_cell) = (frame.origin[axis], frame.last_cell[axis]);
+            let (origin, last_cell) = (geometry.origin[axis], geometry.last_cell[axis]);
             for lane in 0..LANES {
-                let local = (coordinates[lane] - origin) * frame.cells_per_length;
-                // The upper end belongs to the last cell. What is not a number goes to the first one.
+                let local = (coordinates[lane] - origin) * geometry.cells_per_length;
+                // The upper end belongs to the last cell. NaN goes to the first cell.
                 let bounded = if local > 1.0 { local } else { 1.0 };
                 let bounded = if bounded < last_cell { bounded } else { last_cell };
-                // SAFETY: at least one, and no more than there are nodes in a row. A checked cast is no vector code.
+                // SAFETY: at least one, and less than the number of nodes in a row. A checked cast
+                // is not vectorized.
                 let cell: i32 = unsafe { bounded.to_int_unchecked() };
-                place.passed[axis][lane] = T::of(local - f64::from(cell));
-                place.starts[lane] += (cell as u32 - 1) * stride;
+                stencils.fraction[axis][lane] = T::of(local - f64::from(cell));
+                stencils.starts[lane] += (cell as u32 - 1) * stride;
             }
-            stride *= frame.dims[axis];
+            stride *= geometry.dims[axis];
         }
-        place
+        stencils
     }
 }

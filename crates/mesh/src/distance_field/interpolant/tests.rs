@@ -8,13 +8,15 @@ use crate::{
     distance_field::{Grid, interpolant::columns::Plain, spline},
 };
 
-/// Bound on the rounding of slopes in `f32` lanes, over cells and what the coefficients differ by: as [`VALUE_ROUNDING`], but along
-/// one axis the weights are those of the derivative, 1.5 together, which roundings move by 21u.
+/// Bound on the rounding of slopes in `f32` lanes, times cell size over the spread of the
+/// coefficients. Derived like [`VALUE_ROUNDING`], except that the weights along one axis are those
+/// of the derivative. Their sizes sum to 1.5, and roundings move them by 21u.
 const SLOPE_ROUNDING: f64 = 93.0 / (1 << 24) as f64;
 
 const GRID: Grid = Grid { origin: DVec3::new(-3.0, 2.0, 0.5), cell: 0.1, dims: [19, 17, 23] };
 
-/// Coefficients like those of a distance with kinks, far from zero: slopes of up to one, rough.
+/// Coefficients like those of a distance with kinks, far from zero: rough, with slopes of up to
+/// one.
 fn interpolant() -> Interpolant {
     let grid = GRID;
     let samples: Vec<f32> = (0..grid.len())
@@ -26,7 +28,7 @@ fn interpolant() -> Interpolant {
     Interpolant::new(&grid, &samples, &NoProgress).unwrap()
 }
 
-/// Points inside and beyond, on nodes and on the border of what can be sampled, and what is not finite.
+/// Points inside and outside, on nodes, on the border of the sampled cells, and not finite.
 fn blocks() -> Vec<PointBlock> {
     let Grid { origin, cell, dims } = GRID;
     let size = cell * DVec3::from_array(dims.map(|nodes| nodes as f64 - 1.0));
@@ -48,8 +50,8 @@ fn bits(block: &DistanceBlock) -> [[u64; LANES]; 4] {
 
 type Kernel = fn(&Lattice<'_>, &PointBlock, &mut DistanceBlock);
 
-/// The dispatched kernel beside those of narrower targets that this machine can run.
-fn agree(dispatched: Kernel, narrow: &[(&str, Kernel)]) {
+/// Checks the dispatched kernel against those for narrower targets that this machine can run.
+fn assert_same_bits(dispatched: Kernel, narrow: &[(&str, Kernel)]) {
     let interpolant = interpolant();
     let lattice = interpolant.lattice().unwrap();
     let (mut expected, mut found) = (DistanceBlock::FAR, DistanceBlock::FAR);
@@ -64,7 +66,7 @@ fn agree(dispatched: Kernel, narrow: &[(&str, Kernel)]) {
 
 macro_rules! narrow_kernels {
     ($real:ty) => {{
-        // SAFETY: every machine has what this needs.
+        // SAFETY: this implementation needs no CPU feature.
         let plain: Kernel = |lattice, points, out| unsafe { lattice.sample::<$real, Plain>(points, out) };
         #[cfg(not(target_arch = "x86_64"))]
         let narrow = vec![("plain", plain)];
@@ -74,12 +76,12 @@ macro_rules! narrow_kernels {
             let sse: Kernel = |lattice, points, out| unsafe { lattice.sample::<$real, columns::Sse>(points, out) };
             #[target_feature(enable = "avx2")]
             fn on_avx2(lattice: &Lattice<'_>, points: &PointBlock, out: &mut DistanceBlock) {
-                // SAFETY: called only where there is AVX2.
+                // SAFETY: called only on machines with AVX2.
                 unsafe { lattice.sample::<$real, columns::Avx>(points, out) };
             }
             let mut narrow = vec![("plain", plain), ("sse", sse)];
             if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: there is AVX2.
+                // SAFETY: AVX2 was detected.
                 narrow.push(("avx2", |lattice, points, out| unsafe { on_avx2(lattice, points, out) }));
             }
             narrow
@@ -90,8 +92,8 @@ macro_rules! narrow_kernels {
 
 #[test]
 fn bits_do_not_depend_on_the_target() {
-    agree(sample_single, &narrow_kernels!(f32));
-    agree(sample_double, &narrow_kernels!(f64));
+    assert_same_bits(sample_single, &narrow_kernels!(f32));
+    assert_same_bits(sample_double, &narrow_kernels!(f64));
 }
 
 #[test]
@@ -116,12 +118,13 @@ fn single_precision_keeps_its_bounds() {
     let slope_bound = SLOPE_ROUNDING * interpolant.spread / GRID.cell;
     assert!(worst_value <= interpolant.single_error(), "{worst_value:e} of {:e}", interpolant.single_error());
     assert!(worst_slope <= slope_bound, "{worst_slope:e} of {slope_bound:e}");
-    // Bounds far from the truth would be useless. Roundings are random, and stencils seldom as steep as the steepest.
+    // The bounds are not far from the truth. Roundings are random, and few stencils are as steep as
+    // the steepest, hence the small factor.
     assert!(worst_value > 5e-4 * interpolant.single_error(), "{worst_value:e} of {:e}", interpolant.single_error());
     assert!(worst_slope > 5e-4 * slope_bound, "{worst_slope:e} of {slope_bound:e}");
 }
 
-/// The kernel against the sum over all 64 coefficients, in any order.
+/// Compares the kernel with the plain sum over all 64 coefficients.
 #[test]
 fn double_precision_is_the_sum_of_products() {
     let interpolant = interpolant();
@@ -142,8 +145,9 @@ fn double_precision_is_the_sum_of_products() {
                 gradient +=
                     coefficient * DVec3::new(slope[0][i] * y * z, x * slope[1][j] * z, x * y * slope[2][k]) / cell;
             }
-            // Sums of 64 products of coefficients near 41, on both sides; over a cell for the gradient. The part of the cell passed
-            // is rounded too, which shows where the slope changes, by up to 100 a unit of length.
+            // Both sides sum 64 products of coefficients near 41; the gradient divides by the cell
+            // size. The fraction of the cell is rounded too, which matters because the slope
+            // changes by up to 100 per unit length.
             assert!((block.value[lane] - value).abs() < 64.0 * 41.0 * f64::EPSILON, "{} {value}", block.value[lane]);
             let off = (block.gradient.get(lane) - gradient).length();
             assert!(off < 64.0 * 41.0 * f64::EPSILON / cell, "{off:e}");

@@ -1,4 +1,8 @@
-//! Triangles that are prepared for the search together, in vector registers: a small part of the hierarchy, with boxes along it.
+//! Preparation of leaf blocks.
+//!
+//! A leaf block is a small part of the hierarchy: adjacent leaves with up to [`LEAF_BLOCK`]
+//! triangles. All of its triangles are prepared together, one per lane, with boxes aligned to the
+//! surface.
 
 use std::ops::Range;
 
@@ -6,94 +10,96 @@ use glam::{DMat3, DVec3};
 use multiversion::multiversion;
 
 use super::flat_triangle::FlatTriangle;
-use super::oriented_box::{OrientedBox, Shell};
-use super::packet::LANES;
-use super::vector::{Lanes3, at, cross, direction, dot, minus, perpendicular, select, square};
+use super::lanes::{LANES, Lanes3, at, cross, direction, dot, minus, perpendicular, select, square};
+use super::oriented_box::{OrientedBox, PackedBox};
 use crate::Bvh;
 use crate::bvh::Node;
-use crate::extremes::{greater, lesser};
+use crate::extremes::{max, min};
 
-/// Triangles in a grain at most.
-pub(super) const GRAIN: u32 = LANES as u32;
+/// Maximum number of triangles in a leaf block.
+pub(super) const LEAF_BLOCK: u32 = LANES as u32;
 
-/// How a grain, or a larger part of the hierarchy, lies.
+/// Position, orientation and size of a leaf block or of a larger part of the hierarchy.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Grain {
-    /// Triangles.
+pub(super) struct SubtreeSummary {
+    /// Number of triangles.
     count: u32,
     /// Mean of the corners.
     center: DVec3,
-    /// Sum of the area vectors of all triangles, turned to the same side: across the grain.
+    /// Sum of the area vectors of all triangles, flipped to the same side: the direction across the
+    /// part.
     normal: DVec3,
-    pub(super) shell: Shell,
+    pub(super) obb: OrientedBox,
     /// Square of the length of the longest edge.
     pub(super) longest2: f64,
 }
 
-/// Where what is prepared goes.
+/// Output slices for one part of the hierarchy.
 #[derive(Debug)]
-pub(super) struct Place<'a> {
-    /// From this number on.
+pub(super) struct OutputSlice<'a> {
+    /// Slot of the first triangle in `triangles`.
     pub(super) first_slot: u32,
     pub(super) triangles: &'a mut [FlatTriangle],
-    /// From this node on.
+    /// Node of the first box in `boxes`.
     pub(super) first_box: usize,
-    pub(super) boxes: &'a mut [OrientedBox],
-    /// What boxes are grown by.
+    pub(super) boxes: &'a mut [PackedBox],
+    /// Margin of the boxes, which covers their rounding.
     pub(super) rounding: f64,
 }
 
-impl Grain {
-    /// Both together, in a box around these shells.
-    pub(super) fn join(one: &Self, other: &Self, shells: &[Shell]) -> Self {
+impl SubtreeSummary {
+    /// Merges two parts. The box of the result encloses `obbs`.
+    pub(super) fn join(one: &Self, other: &Self, obbs: &[OrientedBox]) -> Self {
         let count = one.count + other.count;
-        let share = f64::from(one.count) / f64::from(count);
+        let weight = f64::from(one.count) / f64::from(count);
         let normal = one.normal + turned_along(one.normal, other.normal);
         Self {
             count,
-            center: one.center * share + other.center * (1.0 - share),
+            center: one.center * weight + other.center * (1.0 - weight),
             normal,
-            shell: Shell::across_and_along(normal, other.center - one.center).holding(shells),
-            longest2: greater(one.longest2, other.longest2),
+            obb: OrientedBox::across_and_along(normal, other.center - one.center).enclosing(obbs),
+            longest2: max(one.longest2, other.longest2),
         }
     }
 }
 
-/// Triangles in lanes, and how they lie along the axes of their leaf and along those of the grain.
-struct Lanes {
-    /// Axes of the leaf that a lane belongs to.
+/// Triangles in lanes, with their extents along the axes of their leaf and of the block.
+struct BlockLanes {
+    /// Axes of the leaf of each lane.
     axes: [Lanes3; 3],
     along_leaf: Extents,
-    along_grain: Extents,
+    along_block: Extents,
 }
 
-/// Least and greatest coordinates along three axes.
+/// Smallest and largest coordinates along three axes.
 struct Extents {
     min: Lanes3,
     max: Lanes3,
 }
 
-/// Makes the triangles below a node, of which there are at most [`GRAIN`], and the boxes of all nodes below it; `slot` is that of the
-/// first triangle.
+/// Prepares the triangles below a node, at most [`LEAF_BLOCK`], and the boxes of all nodes below
+/// it. The first triangle is in `slot`.
 ///
-/// Leaves get boxes along their own triangles, the nodes above them along the whole grain.
+/// The boxes of leaves are aligned to their own triangles, the boxes of inner nodes to the whole
+/// block.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
-pub(super) fn prepare(bvh: &Bvh, node: usize, slot: u32, place: &mut Place<'_>) -> Grain {
+pub(super) fn prepare(bvh: &Bvh, node: usize, slot: u32, out: &mut OutputSlice<'_>) -> SubtreeSummary {
     let nodes = bvh.nodes();
     let count = nodes[node].count as usize;
     let mut corners = [[[0.0; LANES]; 3]; 3];
     for lane in 0..LANES {
         // Lanes without a triangle repeat the last one.
-        let held = bvh.corners(slot + lane.min(count - 1) as u32);
+        let triangle = bvh.corners(slot + lane.min(count - 1) as u32);
         for k in 0..3 {
             for axis in 0..3 {
-                corners[k][axis][lane] = held[k][axis];
+                corners[k][axis][lane] = triangle[k][axis];
             }
         }
     }
-    let first = (slot - place.first_slot) as usize;
-    FlatTriangle::set_each(&mut place.triangles[first..first + count], &corners);
+    let first = (slot - out.first_slot) as usize;
+    FlatTriangle::set_each(&mut out.triangles[first..first + count], &corners);
 
+    // Area vector, sum of corners, and longest edge of each triangle.
     let [mut areas, mut sums, mut edges] = [[[0.0; LANES]; 3]; 3];
     let mut longest2 = [0.0; LANES];
     for i in 0..LANES {
@@ -111,11 +117,14 @@ pub(super) fn prepare(bvh: &Bvh, node: usize, slot: u32, place: &mut Place<'_>) 
     }
     let vector = |lanes: &Lanes3, lane: usize| DVec3::from_array(at(lanes, lane));
     let (mut normal, mut sum) = (DVec3::ZERO, DVec3::ZERO);
+    // Number of triangles below the first child; zero for a leaf.
     let half = if nodes[node].is_leaf() { 0 } else { nodes[nodes[node].first as usize].count as usize };
     let mut sum_of_half = DVec3::ZERO;
     let [mut normals, mut tangents] = [[[0.0; LANES]; 3]; 2];
     let mut longest = 0;
     let mut first = 0;
+    // Sum up the whole block. Copy the normal and the longest edge of each leaf to all of its
+    // lanes.
     for_leaves(bvh, node, &mut |leaf: &Node| {
         let lanes = first..first + leaf.count as usize;
         first = lanes.end;
@@ -136,10 +145,11 @@ pub(super) fn prepare(bvh: &Bvh, node: usize, slot: u32, place: &mut Place<'_>) 
         }
     });
     let center = sum / (3.0 * count as f64);
-    // A node is long from one child to the other; a leaf has axes of its own.
+    // An inner node extends from one child to the other. A leaf uses the axes of its longest edge.
     let tangent = if half > 0 { center - sum_of_half / (3.0 * half as f64) } else { DVec3::ZERO };
-    let shell = Shell::across_and_along(normal, tangent);
+    let obb = OrientedBox::across_and_along(normal, tangent);
 
+    // Axes of the leaf of each lane: across the surface, along its longest edge, and across both.
     let mut axes = [[[0.0; LANES]; 3]; 3];
     for i in 0..LANES {
         let (across, _) = direction(at(&normals, i), [1.0, 0.0, 0.0]);
@@ -152,17 +162,17 @@ pub(super) fn prepare(bvh: &Bvh, node: usize, slot: u32, place: &mut Place<'_>) 
         }
     }
     let along_leaf = Extents::of(&corners, &axes);
-    // Spelled out, since calls that take a closure stay calls in code for other registers than the rest.
+    // Not a closure passed to `array::map`: such a call is not inlined into code for other targets.
     let all = |vector: DVec3| [[vector.x; LANES], [vector.y; LANES], [vector.z; LANES]];
-    let of_grain = [all(shell.axes.x_axis), all(shell.axes.y_axis), all(shell.axes.z_axis)];
-    let lanes = Lanes { axes, along_leaf, along_grain: Extents::of(&corners, &of_grain) };
-    let mut grain = Grain { count: count as u32, center, normal, shell, longest2: longest2[longest] };
+    let block_axes = [all(obb.axes.x_axis), all(obb.axes.y_axis), all(obb.axes.z_axis)];
+    let lanes = BlockLanes { axes, along_leaf, along_block: Extents::of(&corners, &block_axes) };
+    let mut summary = SubtreeSummary { count: count as u32, center, normal, obb, longest2: longest2[longest] };
     if nodes[node].is_leaf() {
-        grain.shell = lanes.leaf(0, count);
+        summary.obb = lanes.leaf(0, count);
     } else {
-        (grain.shell.min, grain.shell.max) = lanes.boxes_below(bvh, node, &mut 0, &shell, place);
+        (summary.obb.min, summary.obb.max) = lanes.boxes_below(bvh, node, &mut 0, &obb, out);
     }
-    grain
+    summary
 }
 
 /// Visits the leaves below a node in order.
@@ -186,14 +196,14 @@ impl Extents {
                 let a = dot(at(&corners[0], i), direction);
                 let b = dot(at(&corners[1], i), direction);
                 let c = dot(at(&corners[2], i), direction);
-                extents.min[axis][i] = lesser(a, lesser(b, c));
-                extents.max[axis][i] = greater(a, greater(b, c));
+                extents.min[axis][i] = min(a, min(b, c));
+                extents.max[axis][i] = max(a, max(b, c));
             }
         }
         extents
     }
 
-    /// Of some lanes together.
+    /// Returns the extents of several lanes together.
     fn joined(&self, lanes: Range<usize>) -> (DVec3, DVec3) {
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for lane in lanes {
@@ -204,15 +214,16 @@ impl Extents {
     }
 }
 
-impl Lanes {
-    /// Extents of a node along the axes of the grain, after the boxes of the nodes below it.
+impl BlockLanes {
+    /// Sets the boxes of the nodes below a node, then returns the extents of the node along the
+    /// axes of the block.
     fn boxes_below(
         &self,
         bvh: &Bvh,
         node: usize,
         lane: &mut usize,
-        grain: &Shell,
-        place: &mut Place<'_>,
+        block: &OrientedBox,
+        out: &mut OutputSlice<'_>,
     ) -> (DVec3, DVec3) {
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let children = bvh.nodes()[node].first as usize;
@@ -221,26 +232,26 @@ impl Lanes {
             let (own, (child_min, child_max)) = if node.is_leaf() {
                 let (first, count) = (*lane, node.count as usize);
                 *lane += count;
-                (self.leaf(first, count), self.along_grain.joined(first..first + count))
+                (self.leaf(first, count), self.along_block.joined(first..first + count))
             } else {
-                let (min, max) = self.boxes_below(bvh, child, lane, grain, place);
-                (Shell { axes: grain.axes, min, max }, (min, max))
+                let (min, max) = self.boxes_below(bvh, child, lane, block, out);
+                (OrientedBox { axes: block.axes, min, max }, (min, max))
             };
-            place.boxes[child - place.first_box] = own.rounded(place.rounding, node);
+            out.boxes[child - out.first_box] = own.packed(out.rounding, node);
             (min, max) = (min.min(child_min), max.max(child_max));
         }
         (min, max)
     }
 
-    /// The shell of the leaf in these lanes.
-    fn leaf(&self, first: usize, count: usize) -> Shell {
+    /// Returns the box of the leaf in these lanes.
+    fn leaf(&self, first: usize, count: usize) -> OrientedBox {
         let axes = [0, 1, 2].map(|axis| DVec3::from_array(at(&self.axes[axis], first)));
         let (min, max) = self.along_leaf.joined(first..first + count);
-        Shell { axes: DMat3::from_cols(axes[0], axes[1], axes[2]), min, max }
+        OrientedBox { axes: DMat3::from_cols(axes[0], axes[1], axes[2]), min, max }
     }
 }
 
-/// `vector`, or its opposite if that is the one to the same side as `side`.
+/// Returns `vector` or its opposite, whichever is on the same side as `side`.
 fn turned_along(side: DVec3, vector: DVec3) -> DVec3 {
     if side.dot(vector) < 0.0 { -vector } else { vector }
 }

@@ -1,13 +1,22 @@
-//! Vectors for loops over lanes, which the compiler keeps in registers only if they are plain arrays.
+//! Lanes of a packet, and vectors for loops over lanes.
+//!
+//! Vectors are plain arrays, because the compiler keeps only those in registers.
 
-use super::packet::LANES;
+/// Nodes in a packet along x, y and z.
+pub(super) const PACKET: [usize; 3] = [4, 2, 2];
+
+/// Nodes in a packet.
+pub(super) const LANES: usize = PACKET[0] * PACKET[1] * PACKET[2];
+
+/// One number for each node of a packet.
+pub(super) type Lanes = [f32; LANES];
 
 pub(super) type Vector = [f64; 3];
 
-/// Coordinates of a vector in each lane.
+/// One vector for each lane, component by component.
 pub(super) type Lanes3 = [[f64; LANES]; 3];
 
-/// The vector in a lane.
+/// Returns the vector in a lane.
 #[inline(always)]
 pub(super) fn at(lanes: &Lanes3, lane: usize) -> Vector {
     [lanes[0][lane], lanes[1][lane], lanes[2][lane]]
@@ -42,7 +51,8 @@ pub(super) fn select(condition: bool, one: Vector, other: Vector) -> Vector {
     ]
 }
 
-/// The vector over its length, and that length; `or` in place of a direction that underflow leaves none of.
+/// Normalizes a vector and returns its length. The direction is `or` if the squared length
+/// underflows.
 #[inline(always)]
 pub(super) fn direction(vector: Vector, or: Vector) -> (Vector, f64) {
     let squared = square(vector);
@@ -52,29 +62,33 @@ pub(super) fn direction(vector: Vector, or: Vector) -> (Vector, f64) {
     (select(squared >= f64::MIN_POSITIVE, scaled, or), length)
 }
 
-/// A unit vector at right angles to this one. J. Duff et al., *Building an Orthonormal Basis, Revisited* (2017).
+/// Returns a unit vector perpendicular to a unit vector (J. Duff et al., *Building an Orthonormal
+/// Basis, Revisited*, 2017).
 #[inline(always)]
-fn any_across([x, y, z]: Vector) -> Vector {
+fn any_perpendicular([x, y, z]: Vector) -> Vector {
     let sign = if z < 0.0 { -1.0 } else { 1.0 };
-    let share = -1.0 / (sign + z);
-    [x * y * share, sign + y * y * share, -y]
+    let scale = -1.0 / (sign + z);
+    [x * y * scale, sign + y * y * scale, -y]
 }
 
-/// Square of the sine of the angle to an axis below which a vector does not tell a direction across it. Larger: slivers are taken for
-/// segments. Smaller than 1e-18: what is left across the axis is so much rounding that it leans against it by more than `f32` rounds.
+/// Square of the sine of the angle to an axis below which a vector does not define a perpendicular
+/// direction. Larger: slivers are treated as segments. Smaller than 1e-18: the perpendicular
+/// component is mostly rounding, and deviates from a right angle by more than the rounding of
+/// `f32`.
 const PARALLEL: f64 = 1e-16;
 
-/// The unit vector at right angles to the unit vector `axis` that is nearest to `vector`; any where that is not told.
+/// Returns the unit vector perpendicular to the unit vector `axis` that is nearest to `vector`. If
+/// `vector` is parallel to the axis, any perpendicular vector is returned.
 #[inline(always)]
 pub(super) fn perpendicular(axis: Vector, vector: Vector) -> Vector {
     let along = dot(axis, vector);
     let across = minus(vector, [axis[0] * along, axis[1] * along, axis[2] * along]);
-    let is_told = square(across) > PARALLEL * square(vector);
-    direction(select(is_told, across, [0.0; 3]), any_across(axis)).0
+    let is_defined = square(across) > PARALLEL * square(vector);
+    direction(select(is_defined, across, [0.0; 3]), any_perpendicular(axis)).0
 }
 
 #[test]
-fn axes_are_at_right_angles_whatever_the_vector() {
+fn perpendicular_is_a_unit_vector_at_right_angles() {
     let axes = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.6, 0.0, 0.8], [0.0, -0.6, -0.8]];
     let vectors =
         [[0.0; 3], [0.3, 0.2, 0.1], [0.6, 1e-9, 0.8], [0.6, 1e-17, 0.8], [1e-170, 0.0, 1e-170], [-7.0, 0.0, 0.0]];
@@ -82,7 +96,7 @@ fn axes_are_at_right_angles_whatever_the_vector() {
         for vector in vectors {
             let across = perpendicular(axis, vector);
             assert!((square(across) - 1.0).abs() < 1e-14, "{axis:?} {vector:?}: {across:?}");
-            // Rounding of 1e-16 over the least sine that tells a direction, 1e-8.
+            // Rounding of 1e-16 over 1e-8, the smallest sine that defines a direction.
             assert!(dot(across, axis).abs() < 4e-8, "{axis:?} {vector:?}: {across:?}");
         }
     }
