@@ -1,6 +1,7 @@
 //! Patches over the holes of a mesh, which reduce its signs to integers and a few triangles.
 
 use glam::DVec3;
+use petgraph::unionfind::UnionFind;
 
 use crate::{Bvh, BvhError, WindingNumber};
 
@@ -26,23 +27,22 @@ impl Patches {
         vertices.sort_unstable();
         vertices.dedup();
         let number = |vertex: u32| vertices.partition_point(|&other| other < vertex);
-        let mut parent: Vec<usize> = (0..vertices.len()).collect();
+        let mut sets = UnionFind::<usize>::new(vertices.len());
         for &[from, to] in open_edges {
-            let (from, to) = (root(&mut parent, number(from)), root(&mut parent, number(to)));
-            parent[from.max(to)] = from.min(to);
+            sets.union(number(from), number(to));
         }
+        let set_of = sets.into_labeling();
         let mut counts = vec![0.0; vertices.len()];
-        for i in 0..vertices.len() {
-            counts[root(&mut parent, i)] += 1.0;
+        for &set in &set_of {
+            counts[set] += 1.0;
         }
         let mut centroids = vec![DVec3::ZERO; vertices.len()];
-        for (i, &vertex) in vertices.iter().enumerate() {
-            let set = root(&mut parent, i);
+        for (&set, &vertex) in set_of.iter().zip(&vertices) {
             centroids[set] += positions[vertex as usize] / counts[set];
         }
         let (triangles, positions) = (open_edges.iter())
             .map(|&[from, to]| {
-                let set = root(&mut parent, number(from));
+                let set = set_of[number(from)];
                 let corners = [positions[to as usize], positions[from as usize], centroids[set]];
                 ([to, from, (positions.len() + set) as u32], corners)
             })
@@ -59,12 +59,4 @@ impl Patches {
             (0..self.positions.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         Ok(WindingNumber::new(std::sync::Arc::new(Bvh::new(self.positions.as_flattened(), &triangles)?)))
     }
-}
-
-fn root(parent: &mut [usize], mut i: usize) -> usize {
-    while parent[i] != i {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    i
 }
