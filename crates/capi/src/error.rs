@@ -10,7 +10,7 @@ use isochore_mesh::{
     Cancelled, MeshError, SelfIntersectionError,
     io::{ParseError, ReadError, WriteError},
 };
-use isochore_sculpt::{ReplayError, recipe::RecipeError, session::SessionError};
+use isochore_sculpt::{BuildToolError, ReplayError, SceneError, recipe::RecipeError, session::SessionError};
 
 /// What came of a call.
 #[repr(C)]
@@ -132,6 +132,18 @@ impl From<ReplayError> for Failure {
             ReplayError::Cancelled(cancelled) => cancelled.into(),
             error => Self::new(Status::Recipe, error),
         }
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        ReplayError::from(error).into()
+    }
+}
+
+impl From<BuildToolError> for Failure {
+    fn from(error: BuildToolError) -> Self {
+        SceneError::from(error).into()
     }
 }
 

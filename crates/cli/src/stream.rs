@@ -35,7 +35,7 @@ pub(crate) fn stream(mut job: Job, console: &Console) -> Result<Outcome, Command
     let meshes = job.read_tools()?;
     let needs_bounds = PointFlow::needs_bounds(&job.recipe);
     let bounds = if needs_bounds { bounds(&input, &job.recipe, console)? } else { Aabb::EMPTY };
-    let flow = PointFlow::new(&job.recipe, &meshes, bounds, console).map_err(|error| job.failed(error))?;
+    let flow = PointFlow::new(&job.recipe, &meshes, bounds, console).map_err(|error| job.failed(error.into()))?;
     let source = Source { text: &job.text, overrides: &job.settings };
     let mut report = StreamReport::new(&job.recipe, source, flow.warnings.clone());
     report.seconds.prepare = start.elapsed().as_secs_f64();
@@ -110,7 +110,7 @@ fn carry(
         }
         let advect_start = Instant::now();
         points = PointFlow::place(&job.recipe, points);
-        let carried = flow.advect(&points, &OfOneChunk(console)).map_err(|error| job.failed(error))?;
+        let carried = flow.advect(&points, &OfOneChunk(console))?;
         report.add(&points, &carried);
         let write_start = Instant::now();
         stream.write_chunk(&carried, writer).map_err(&name)?;

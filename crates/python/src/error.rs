@@ -8,7 +8,7 @@ use isochore_mesh::{
     io::{ReadError, WriteError},
 };
 use isochore_sculpt::{
-    ReplayError,
+    BuildToolError, ReplayError, SceneError,
     recipe::{self, Location},
 };
 use pyo3::{
@@ -140,8 +140,19 @@ impl From<ReplayError> for Failure {
     fn from(error: ReplayError) -> Self {
         match error {
             ReplayError::Cancelled(_) => Self::Cancelled,
-            ReplayError::Recipe(error) => error.into(),
             error => Self::Recipe { message: error.to_string(), key: error.key(), line: None },
         }
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        ReplayError::from(error).into()
+    }
+}
+
+impl From<BuildToolError> for Failure {
+    fn from(error: BuildToolError) -> Self {
+        SceneError::from(error).into()
     }
 }

@@ -40,11 +40,11 @@ pub mod schema;
 pub mod session;
 mod stream_report;
 
-pub use point_flow::PointFlow;
+pub use point_flow::{PointFlow, PointReplay, replay_points};
 pub use recipe::Recipe;
-pub use replay::{Meshes, PointReplay, Replay, ReplayError, replay, replay_points};
+pub use replay::{Replay, ReplayError, replay};
 pub use report::{Bounds, Measures, Report, Seconds, Source, StrokeReport};
-pub use scene::Scene;
+pub use scene::{BuildToolError, Meshes, Scene, SceneError, build_tool};
 pub use stream_report::{StreamReport, StreamSeconds};
 
 #[cfg(doctest)]

@@ -2,13 +2,42 @@
 
 use glam::DVec3;
 use isochore_field as field;
-use isochore_mesh::{Aabb, Monitor};
+use isochore_mesh::{Aabb, Cancelled, Monitor};
 
 use crate::{
     recipe::{Mask, Recipe, RecipeError, RecipeProblem, Stroke},
-    replay::{Meshes, ReplayError},
-    scene::{Scene, place},
+    scene::{Meshes, Scene, SceneError, place},
 };
+
+/// Result of [`replay_points`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointReplay {
+    /// The deformed points, in the order of the input.
+    pub points: Vec<DVec3>,
+    /// Warnings, among them the parts of the recipe that do not apply to points.
+    pub warnings: Vec<String>,
+}
+
+/// Advects `points`, in world coordinates, along the strokes of `recipe`.
+///
+/// The target's mesh is needed only if the mask has a weight for each vertex. If it is among the `meshes`, a rotating
+/// half-space derives its time step from the bounds of the mesh, otherwise from those of the points.
+///
+/// Points have no surface, so stamps are refused. They enclose no volume, so the lock is skipped: points agree with the
+/// vertices of a mesh before its lock.
+///
+/// # Errors
+/// [`SceneError`], with the key of the recipe at fault.
+pub fn replay_points(
+    recipe: &Recipe,
+    meshes: &Meshes,
+    points: &[DVec3],
+    monitor: &dyn Monitor,
+) -> Result<PointReplay, SceneError> {
+    let flow = PointFlow::new(recipe, meshes, Aabb::of(points.iter().copied()), monitor)?;
+    let points = flow.advect(points, monitor).map_err(SceneError::Cancelled)?;
+    Ok(PointReplay { points, warnings: flow.warnings })
+}
 
 /// The strokes of a recipe, ready to carry points. Where they carry a point depends on that point alone, so that points may come
 /// in chunks of any size.
@@ -24,8 +53,8 @@ impl PointFlow {
     /// [they need to](Self::needs_bounds). The bounds of the target's mesh count instead where it is among the `meshes`.
     ///
     /// # Errors
-    /// [`ReplayError`], naming the key of the recipe that cannot be followed; a stamp, which needs a surface.
-    pub fn new(recipe: &Recipe, meshes: &Meshes, bounds: Aabb, monitor: &dyn Monitor) -> Result<Self, ReplayError> {
+    /// [`SceneError`], with the key of the recipe at fault. A stamp is refused, because it needs a surface.
+    pub fn new(recipe: &Recipe, meshes: &Meshes, bounds: Aabb, monitor: &dyn Monitor) -> Result<Self, SceneError> {
         if let Some(index) = recipe.strokes.iter().position(|stroke| matches!(stroke, Stroke::Stamp(_))) {
             return Err(stamp_on_points(index).into());
         }
@@ -69,14 +98,14 @@ impl PointFlow {
         place(&recipe.target, points)
     }
 
-    /// Where the strokes carry `points`, which are in world coordinates.
+    /// The images of `points`, in world coordinates.
     ///
     /// # Errors
-    /// [`ReplayError::Cancelled`] alone.
-    pub fn advect(&self, points: &[DVec3], monitor: &dyn Monitor) -> Result<Vec<DVec3>, ReplayError> {
+    /// [`Cancelled`], if the monitor asks to stop.
+    pub fn advect(&self, points: &[DVec3], monitor: &dyn Monitor) -> Result<Vec<DVec3>, Cancelled> {
         field::advect_points(points, &self.strokes, monitor).map_err(|error| match error {
-            field::AdvectError::Cancelled(cancelled) => ReplayError::Cancelled(cancelled),
-            field::AdvectError::Stamp { stroke } => stamp_on_points(stroke).into(),
+            field::AdvectError::Cancelled(cancelled) => cancelled,
+            field::AdvectError::Stamp { .. } => unreachable!("`new` refuses stamps"),
         })
     }
 }

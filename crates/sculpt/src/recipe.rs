@@ -3,9 +3,11 @@
 mod deserialize;
 mod error;
 mod mask;
+mod names;
 pub(crate) mod pose;
 mod region;
 mod ring;
+pub(crate) mod rotation;
 mod shape;
 mod strip;
 mod stroke;
@@ -32,9 +34,8 @@ pub use strip::{Radius, SpinePoints, Strip, StripMode};
 pub use stroke::{Bend, Key, Move, Stamp, Stroke, Twist};
 pub use tree::Override;
 
+use rotation::no_rotation;
 use tree::Node;
-
-use crate::scene::used_tools;
 
 /// What to deform, with which tools and strokes, how closely, and where to put the results.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -182,12 +183,6 @@ pub struct Refine {
     pub max_triangles: usize,
 }
 
-impl Default for Refine {
-    fn default() -> Self {
-        Self { enabled: true, volume: 1e-4, deviation: 1e-3, max_edge: None, max_triangles: 2_000_000 }
-    }
-}
-
 /// What the written mesh is held to. Promises steer nothing: they are judged at the end.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -291,47 +286,6 @@ impl Recipe {
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).expect("a recipe has only strings for keys")
     }
-
-    /// The mesh files of its target and of the tools in use, each once, in order of name.
-    pub fn mesh_names(&self) -> Vec<&str> {
-        let used = used_tools(self);
-        let tools = self.tools.iter().filter(|(name, _)| used.contains(name.as_str()));
-        let tools = tools.filter_map(|(_, tool)| match &tool.shape {
-            ToolShape::Mesh(shape) => Some(shape.mesh.as_str()),
-            _ => None,
-        });
-        let mut names: Vec<&str> = self.target.mesh.as_deref().into_iter().chain(tools).collect();
-        names.sort_unstable();
-        names.dedup();
-        names
-    }
-}
-
-impl Recipe {
-    /// The curve files that its strokes name, each once, in order of name.
-    pub fn curve_names(&self) -> Vec<&str> {
-        let spines = self.strokes.iter().flat_map(Stroke::spines);
-        let mut names: Vec<&str> = spines.filter_map(SpinePoints::file).collect();
-        names.sort_unstable();
-        names.dedup();
-        names
-    }
-
-    /// Puts the points of the curve file `name` wherever it is named.
-    pub fn inline_curve(&mut self, name: &str, points: &[[f64; 3]]) {
-        let spines = self.strokes.iter_mut().flat_map(Stroke::spines_mut);
-        for spine in spines.filter(|spine| spine.file() == Some(name)) {
-            *spine = SpinePoints::Points(points.to_vec());
-        }
-    }
-}
-
-fn no_rotation() -> [f64; 4] {
-    [0.0, 0.0, 1.0, 0.0]
-}
-
-fn is_no_rotation(rotate: &[f64; 4]) -> bool {
-    *rotate == no_rotation()
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {

@@ -1,19 +1,12 @@
 //! Carrying out a recipe on loaded meshes or on bare points.
 
-use std::{collections::BTreeMap, sync::Arc};
-
-use glam::DVec3;
 use isochore_field as field;
-use isochore_mesh::{Aabb, Cancelled, DistanceFieldError, Monitor, TriMesh};
+use isochore_mesh::{Cancelled, Monitor, TriMesh};
 
 use crate::{
-    point_flow::PointFlow,
-    recipe::{Recipe, RecipeError},
-    scene::Scene,
+    recipe::Recipe,
+    scene::{Meshes, Scene, SceneError},
 };
-
-/// Loaded meshes by the name that the recipe gives them, shared with whoever has loaded them.
-pub type Meshes = BTreeMap<String, Arc<TriMesh>>;
 
 /// What became of the target.
 #[derive(Debug, Clone)]
@@ -22,15 +15,6 @@ pub struct Replay {
     pub scene: Scene,
     /// The deformed mesh and the account of how it came about.
     pub deformed: field::Deformed,
-}
-
-/// What became of points that are no mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointReplay {
-    /// The points, in the order in which they came.
-    pub points: Vec<DVec3>,
-    /// What of the recipe does not apply to points.
-    pub warnings: Vec<String>,
 }
 
 /// Deforms the target of `recipe`, whose mesh files are in `meshes` by [their names](Recipe::mesh_names), and whose curve files
@@ -44,72 +28,18 @@ pub fn replay(recipe: &Recipe, meshes: &Meshes, monitor: &dyn Monitor) -> Result
     Ok(Replay { scene, deformed })
 }
 
-/// Carries `points`, in world coordinates, along the strokes of `recipe`. Its target is looked at for its mask, and where it is
-/// there, for the bounds by which a half-space that turns measures its time step; else those of the points do.
-///
-/// A point set has no surface: a stamp is refused. It has no volume: the lock is left out, so that points agree with the vertices of a mesh before its lock.
-///
-/// # Errors
-/// [`ReplayError`], naming the key of the recipe that cannot be followed.
-pub fn replay_points(
-    recipe: &Recipe,
-    meshes: &Meshes,
-    points: &[DVec3],
-    monitor: &dyn Monitor,
-) -> Result<PointReplay, ReplayError> {
-    let flow = PointFlow::new(recipe, meshes, Aabb::of(points.iter().copied()), monitor)?;
-    let points = flow.advect(points, monitor)?;
-    Ok(PointReplay { points, warnings: flow.warnings })
-}
-
-/// Why a recipe could not be carried out.
+/// Errors of [`replay`].
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
-    /// The recipe is wrong in itself or does not go with its target.
+    /// The objects of the recipe cannot be built.
     #[error(transparent)]
-    Recipe(#[from] RecipeError),
-    /// A mesh that the recipe names was not given.
-    #[error("the mesh `{name}` was not loaded")]
-    MissingMesh {
-        /// Its name in the recipe.
-        name: String,
-    },
-    /// A curve that the recipe names was not [put in](Recipe::inline_curve).
-    #[error("the curve `{name}` was not loaded")]
-    MissingCurve {
-        /// Its name in the recipe.
-        name: String,
-    },
-    /// The distance to a tool's mesh cannot be sampled.
-    #[error("tools.{name}.shape: {source}")]
-    DistanceField {
-        /// Name of the tool.
-        name: String,
-        /// Why not.
-        source: DistanceFieldError,
-    },
-    /// A tool cannot be made.
-    #[error("tools.{name}: {source}")]
-    Tool {
-        /// Its name in the recipe.
-        name: String,
-        /// Why not.
-        source: field::ToolError,
-    },
-    /// A stroke cannot be made.
-    #[error("stroke.{index}: {source}")]
-    Stroke {
-        /// Its number, from zero.
-        index: usize,
-        /// Why not.
-        source: field::StrokeError,
-    },
+    Scene(SceneError),
     /// A stamp cannot be pressed into the target.
     #[error("stroke.{index}: {source}")]
     Stamp {
-        /// Number of the stroke, from zero.
+        /// Index of the stroke.
         index: usize,
-        /// Why not.
+        /// The cause.
         source: field::StampError,
     },
     /// The target cannot be deformed.
@@ -121,15 +51,23 @@ pub enum ReplayError {
 }
 
 impl ReplayError {
-    /// Dotted path of the recipe's key that could not be followed, where it is one.
+    /// Dotted path of the recipe's key at fault, if there is one.
     pub fn key(&self) -> Option<String> {
         match self {
-            Self::Recipe(error) => Some(error.key.clone()),
-            Self::DistanceField { name, .. } => Some(format!("tools.{name}.shape")),
-            Self::Tool { name, .. } => Some(format!("tools.{name}")),
-            Self::Stroke { index, .. } | Self::Stamp { index, .. } => Some(format!("stroke.{index}")),
+            Self::Scene(error) => error.key(),
+            Self::Stamp { index, .. } => Some(format!("stroke.{index}")),
             Self::Deform(_) => Some("target".to_owned()),
-            Self::MissingMesh { .. } | Self::MissingCurve { .. } | Self::Cancelled(_) => None,
+            Self::Cancelled(_) => None,
+        }
+    }
+}
+
+impl From<SceneError> for ReplayError {
+    fn from(error: SceneError) -> Self {
+        match error {
+            // Hosts test for one variant to find out that they asked to stop.
+            SceneError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Scene(error),
         }
     }
 }

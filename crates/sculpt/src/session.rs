@@ -79,7 +79,7 @@ pub use tool::SessionTool;
 pub use volume::MovedVolume;
 
 use crate::{
-    recipe::{Key, Mask, Recipe, RecipeError},
+    recipe::{Integrate, Key, Mask, RecipeError},
     scene,
 };
 use history::{Step, Steps};
@@ -330,19 +330,9 @@ impl Session {
     }
 }
 
-/// Checks what the log would not read back.
+/// Checks what the log could not read back.
 fn check(options: &SessionOptions) -> Result<(), RecipeError> {
-    let recipe = Recipe {
-        recipe: 1,
-        target: options.target.clone(),
-        tools: Default::default(),
-        strokes: Vec::new(),
-        integrate: crate::recipe::Integrate { step: options.step },
-        refine: Default::default(),
-        promise: Default::default(),
-        volume: Default::default(),
-        mask: options.mask.clone(),
-        output: Default::default(),
-    };
-    recipe.validate()
+    options.target.validate().map_err(|error| error.inside("target"))?;
+    Integrate { step: options.step }.validate().map_err(|error| error.inside("integrate"))?;
+    options.mask.validate().map_err(|error| error.inside("mask"))
 }

@@ -36,7 +36,7 @@ fn reading_and_writing_back_is_the_identity() {
 #[test]
 fn errors_name_key_and_remedy() {
     let cases = [
-        ("free_form = 0.5", "free_form = 1.5", "tools.bone.free_form: is 1.5; give a share from 0 to 1"),
+        ("free_form = 0.5", "free_form = 1.5", "tools.bone.free_form: is 1.5; give 1 or less"),
         (
             "parent = \"upper\"",
             "parent = \"uper\"",

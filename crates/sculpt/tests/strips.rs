@@ -2,7 +2,7 @@
 
 use isochore_mesh::NoProgress;
 use isochore_sculpt::{
-    Meshes, Recipe, ReplayError, Report, Source,
+    Meshes, Recipe, Report, SceneError, Source,
     recipe::{Format, RecipeError},
     replay, replay_points,
 };
@@ -155,7 +155,7 @@ fn curves_are_put_in_by_name() {
     let mut recipe = read(&text).unwrap();
     assert_eq!(recipe.curve_names(), ["spine.csv"]);
     let error = replay_points(&recipe, &Meshes::new(), &[], &NoProgress).unwrap_err();
-    assert!(matches!(error, ReplayError::MissingCurve { name } if name == "spine.csv"));
+    assert!(matches!(error, SceneError::MissingCurve { name } if name == "spine.csv"));
     recipe.inline_curve("spine.csv", &points);
     assert_eq!(recipe, read(RECIPE).unwrap());
     assert!(recipe.curve_names().is_empty());

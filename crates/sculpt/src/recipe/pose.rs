@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::{
     Recipe,
     error::{RecipeError, RecipeProblem, nearest},
+    rotation::quaternion,
     validate::{Check, all_finite, fail, is_half_turn, rotation},
 };
-use crate::scene;
 
 /// The name in the keys that stands for the whole tool.
 pub(crate) const ROOT: &str = "root";
@@ -38,7 +38,7 @@ pub struct Bone {
     /// Place of the tool's origin in the world at rest, model units.
     pub at: [f64; 3],
     /// Turn of the tool at rest: axis x, y, z and angle in degrees, right-handed.
-    #[serde(default = "super::no_rotation", skip_serializing_if = "super::is_no_rotation")]
+    #[serde(default = "super::rotation::no_rotation", skip_serializing_if = "super::rotation::is_no_rotation")]
     pub rotate: [f64; 4],
     /// The point that the bone turns about, in the world at rest, model units.
     pub joint: [f64; 3],
@@ -56,7 +56,7 @@ pub struct BoneKey {
     pub at: Option<[f64; 3]>,
     /// Axis x, y, z in the world at rest and angle in degrees, right-handed: of a bone past its parent about its joint, of the
     /// whole about the world's origin. Absolute, not added to the key before.
-    #[serde(default = "super::no_rotation", skip_serializing_if = "super::is_no_rotation")]
+    #[serde(default = "super::rotation::no_rotation", skip_serializing_if = "super::rotation::is_no_rotation")]
     pub rotate: [f64; 4],
 }
 
@@ -177,5 +177,5 @@ impl Pose {
 
 /// The turn of a bone, or of the whole, in a key; none where the key leaves it out.
 pub(crate) fn turn_of(key: &BTreeMap<String, BoneKey>, name: &str) -> DQuat {
-    key.get(name).map_or(DQuat::IDENTITY, |turn| scene::rotation(turn.rotate))
+    key.get(name).map_or(DQuat::IDENTITY, |turn| quaternion(turn.rotate))
 }

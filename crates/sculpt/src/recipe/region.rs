@@ -122,7 +122,7 @@ pub struct ToolRegion {
     /// Place of the tool's origin, model units.
     pub at: [f64; 3],
     /// Axis x, y, z and angle in degrees, right-handed.
-    #[serde(default = "super::no_rotation", skip_serializing_if = "super::is_no_rotation")]
+    #[serde(default = "super::rotation::no_rotation", skip_serializing_if = "super::rotation::is_no_rotation")]
     pub rotate: [f64; 4],
 }
 

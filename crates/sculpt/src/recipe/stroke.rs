@@ -1,20 +1,9 @@
 //! The strokes: one entry of the log for each thing done to the mesh.
 
-use glam::DVec3;
-use isochore_field as field;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    error::RecipeError,
-    pose::Pose,
-    region::Region,
-    ring::Ring,
-    strip::{SpinePoints, Strip},
-    tagged::tagged,
-    validate::{all_finite, rotation},
-};
-use crate::scene;
+use super::{pose::Pose, region::Region, ring::Ring, strip::Strip, tagged::tagged};
 
 /// One deformation. Strokes act one after the other.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -56,19 +45,6 @@ impl Stroke {
     }
 }
 
-impl Stroke {
-    /// The spines that it follows.
-    pub(super) fn spines(&self) -> impl Iterator<Item = &SpinePoints> {
-        let strip = if let Self::Strip(strip) = self { Some(strip) } else { None };
-        strip.into_iter().flat_map(|strip| [Some(&strip.spine), strip.spine_end.as_ref()]).flatten()
-    }
-
-    pub(super) fn spines_mut(&mut self) -> impl Iterator<Item = &mut SpinePoints> {
-        let strip = if let Self::Strip(strip) = self { Some(strip) } else { None };
-        strip.into_iter().flat_map(|strip| [Some(&mut strip.spine), strip.spine_end.as_mut()]).flatten()
-    }
-}
-
 /// See [`Stroke::Move`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -86,20 +62,8 @@ pub struct Key {
     /// Place of the tool's origin, model units.
     pub at: [f64; 3],
     /// Axis x, y, z and angle in degrees, right-handed; absolute, not added to the pose before.
-    #[serde(default = "super::no_rotation", skip_serializing_if = "super::is_no_rotation")]
+    #[serde(default = "super::rotation::no_rotation", skip_serializing_if = "super::rotation::is_no_rotation")]
     pub rotate: [f64; 4],
-}
-
-impl Key {
-    /// The pose itself, world from tool.
-    ///
-    /// # Errors
-    /// [`RecipeError`], naming `at` or `rotate`: a number is not finite, or the axis has no direction.
-    pub fn pose(&self) -> Result<field::Pose, RecipeError> {
-        all_finite("at", &self.at)?;
-        rotation("rotate", &self.rotate)?;
-        Ok(field::Pose { rotation: scene::rotation(self.rotate), translation: DVec3::from_array(self.at) })
-    }
 }
 
 /// See [`Stroke::Twist`].

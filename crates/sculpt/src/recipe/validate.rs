@@ -3,8 +3,9 @@
 use glam::{DQuat, DVec3};
 
 use super::{
-    Key, Mask, Recipe, Target, TargetShape, Tool, ToolShape, Transform, VertexWeights,
+    Integrate, Key, Mask, Recipe, Target, TargetShape, Tool, ToolShape, Transform, VertexWeights,
     error::{RecipeError, RecipeProblem, nearest},
+    rotation::quaternion,
     stroke::Stroke,
 };
 
@@ -35,16 +36,15 @@ impl Recipe {
         if self.recipe != 1 {
             return fail("recipe", RecipeProblem::UnknownVersion(self.recipe));
         }
-        target(&self.target).map_err(|error| error.inside("target"))?;
+        self.target.validate().map_err(|error| error.inside("target"))?;
         for (name, item) in &self.tools {
-            tool(item).map_err(|error| error.inside(name).inside("tools"))?;
+            item.validate().map_err(|error| error.inside(name).inside("tools"))?;
         }
         for (index, item) in self.strokes.iter().enumerate() {
             self.stroke(item).map_err(|error| error.inside(&index.to_string()).inside("stroke"))?;
         }
-        positive("integrate.step", self.integrate.step)?;
-        at_most("integrate.step", self.integrate.step, 1.0)?;
-        mask(&self.mask).map_err(|error| error.inside("mask"))?;
+        self.integrate.validate().map_err(|error| error.inside("integrate"))?;
+        self.mask.validate().map_err(|error| error.inside("mask"))?;
         positive("refine.volume", self.refine.volume)?;
         positive("refine.deviation", self.refine.deviation)?;
         self.refine.max_edge.map_or(Ok(()), |length| positive("refine.max_edge", length))?;
@@ -103,7 +103,8 @@ fn keys(keys: &[Key]) -> Check {
     }
     let mut before: Option<DQuat> = None;
     for (index, key) in keys.iter().enumerate() {
-        let rotation = key.pose().map_err(|error| error.inside(&index.to_string()).inside("keys"))?.rotation;
+        key.validate().map_err(|error| error.inside(&index.to_string()).inside("keys"))?;
+        let rotation = quaternion(key.rotate);
         if before.is_some_and(|before| is_half_turn(before, rotation)) {
             return fail(&format!("keys.{index}.rotate"), RecipeProblem::HalfTurn);
         }
@@ -112,46 +113,78 @@ fn keys(keys: &[Key]) -> Check {
     Ok(())
 }
 
-fn mask(mask: &Mask) -> Check {
-    for (index, pin) in mask.pins.iter().enumerate() {
-        let path = |name: &str| format!("pins.{index}.{name}");
-        all_finite(&path("center"), &pin.center)?;
-        not_negative(&path("radius"), pin.radius)?;
-        positive(&path("support"), pin.support)?;
-    }
-    for (index, plane) in mask.mirror.iter().enumerate() {
-        let path = |name: &str| format!("mirror.{index}.{name}");
-        all_finite(&path("point"), &plane.point)?;
-        direction(&path("normal"), &plane.normal)?;
-    }
-    if let Some(VertexWeights::Values(weights)) = &mask.vertices {
-        for (index, &weight) in weights.iter().enumerate() {
-            let key = format!("vertices.{index}");
-            not_negative(&key, weight)?;
-            at_most(&key, weight, 1.0)?;
+impl Mask {
+    /// Checks everything that can be checked without the target. Keys of errors are relative to the mask.
+    pub(crate) fn validate(&self) -> Check {
+        for (index, pin) in self.pins.iter().enumerate() {
+            let path = |name: &str| format!("pins.{index}.{name}");
+            all_finite(&path("center"), &pin.center)?;
+            not_negative(&path("radius"), pin.radius)?;
+            positive(&path("support"), pin.support)?;
         }
+        for (index, plane) in self.mirror.iter().enumerate() {
+            let path = |name: &str| format!("mirror.{index}.{name}");
+            all_finite(&path("point"), &plane.point)?;
+            direction(&path("normal"), &plane.normal)?;
+        }
+        if let Some(VertexWeights::Values(weights)) = &self.vertices {
+            for (index, &weight) in weights.iter().enumerate() {
+                let key = format!("vertices.{index}");
+                not_negative(&key, weight)?;
+                at_most(&key, weight, 1.0)?;
+            }
+        }
+        if self.fade.is_some() && self.vertices.is_none() {
+            let text = "is how the hold of `vertices` fades; add them, or remove this".to_owned();
+            return fail("fade", RecipeProblem::Other(text));
+        }
+        self.fade.map_or(Ok(()), |fade| positive("fade", fade))
     }
-    if mask.fade.is_some() && mask.vertices.is_none() {
-        let text = "is how the hold of `vertices` fades; add them, or remove this".to_owned();
-        return fail("fade", RecipeProblem::Other(text));
-    }
-    mask.fade.map_or(Ok(()), |fade| positive("fade", fade))
 }
 
-/// Whether two turns are half a turn apart.
+impl Integrate {
+    /// Checks the time step. Keys of errors are relative to this table.
+    pub(crate) fn validate(&self) -> Check {
+        positive("step", self.step)?;
+        at_most("step", self.step, 1.0)
+    }
+}
+
+impl Key {
+    /// Checks that the numbers are finite and the axis is nonzero.
+    pub(crate) fn validate(&self) -> Check {
+        all_finite("at", &self.at)?;
+        rotation("rotate", &self.rotate)
+    }
+}
+
+impl Tool {
+    /// Checks everything that can be checked without the mesh. Keys of errors are relative to the tool.
+    pub(crate) fn validate(&self) -> Check {
+        tool_shape(&self.shape).map_err(|error| error.inside("shape"))?;
+        positive("support", self.support)?;
+        not_negative("free_form", self.free_form)?;
+        at_most("free_form", self.free_form, 1.0)
+    }
+}
+
+/// Whether two rotations differ by half a turn.
 pub(super) fn is_half_turn(before: DQuat, after: DQuat) -> bool {
     // The scalar part of the relative rotation is the cosine of half its angle, and near half a turn its sine is that small.
     before.dot(after).abs() <= 0.5 * HALF_TURN_TOLERANCE
 }
 
-fn target(target: &Target) -> Check {
-    match (&target.mesh, &target.shape) {
-        (Some(_), Some(_)) => return fail("", RecipeProblem::MeshAndShape),
-        (None, None) => return fail("", RecipeProblem::NeitherMeshNorShape),
-        (Some(_), None) => {}
-        (None, Some(shape)) => target_shape(shape).map_err(|error| error.inside("shape"))?,
+impl Target {
+    /// Checks everything that can be checked without the mesh. Keys of errors are relative to the target.
+    pub(crate) fn validate(&self) -> Check {
+        match (&self.mesh, &self.shape) {
+            (Some(_), Some(_)) => return fail("", RecipeProblem::MeshAndShape),
+            (None, None) => return fail("", RecipeProblem::NeitherMeshNorShape),
+            (Some(_), None) => {}
+            (None, Some(shape)) => target_shape(shape).map_err(|error| error.inside("shape"))?,
+        }
+        transform(&self.transform).map_err(|error| error.inside("transform"))
     }
-    transform(&target.transform).map_err(|error| error.inside("transform"))
 }
 
 fn target_shape(shape: &TargetShape) -> Check {
@@ -177,17 +210,6 @@ fn target_shape(shape: &TargetShape) -> Check {
     if triangles > MAX_SHAPE_TRIANGLES {
         let problem = RecipeProblem::TooLarge { requested: triangles, most: MAX_SHAPE_TRIANGLES, what: "triangles" };
         return fail(key, problem);
-    }
-    Ok(())
-}
-
-fn tool(tool: &Tool) -> Check {
-    tool_shape(&tool.shape).map_err(|error| error.inside("shape"))?;
-    positive("support", tool.support)?;
-    not_negative("free_form", tool.free_form)?;
-    if tool.free_form > 1.0 {
-        let text = format!("is {}; give a share from 0 to 1", tool.free_form);
-        return fail("free_form", RecipeProblem::Other(text));
     }
     Ok(())
 }

@@ -6,10 +6,8 @@ use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::{Aabb, TriMesh};
 
-use crate::{
-    recipe::{Mask, Recipe, RecipeError, RecipeProblem, VertexWeights},
-    replay::ReplayError,
-};
+use super::SceneError;
+use crate::recipe::{Mask, Recipe, RecipeError, RecipeProblem, VertexWeights};
 
 /// The strokes of `recipe`, held back by its mask. What is deformed is in `bounds`; weights of vertices belong to `target`.
 pub(super) fn masked(
@@ -17,11 +15,11 @@ pub(super) fn masked(
     recipe: &Recipe,
     target: Option<&TriMesh>,
     bounds: Aabb,
-) -> Result<Vec<field::Stroke>, ReplayError> {
+) -> Result<Vec<field::Stroke>, SceneError> {
     let mask = Arc::new(mask(&recipe.mask, target)?);
     let masked = |(index, stroke): (usize, &field::Stroke)| {
         let stroke = stroke.masked(&mask, bounds, recipe.integrate.step);
-        stroke.map_err(|source| ReplayError::Stroke { index, source })
+        stroke.map_err(|source| SceneError::Stroke { index, source })
     };
     strokes.iter().enumerate().map(masked).collect()
 }

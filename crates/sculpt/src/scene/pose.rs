@@ -6,10 +6,10 @@ use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::Aabb;
 
-use super::rotation;
 use crate::recipe::{
     BoneKey, Pose,
     pose::{ROOT, turn_of},
+    rotation::quaternion,
 };
 
 /// The stroke that `pose` describes, with these tools. The error names the part of the pose that is wrong, where it is one.
@@ -20,7 +20,7 @@ pub(super) fn stroke(
 ) -> Result<Result<field::Stroke, field::StrokeError>, field::JointedToolError> {
     let bones = pose.bones.iter().map(|bone| field::Bone {
         tool: Arc::clone(&tools[bone.tool.as_str()]),
-        rest: field::Pose { rotation: rotation(bone.rotate), translation: bone.at.into() },
+        rest: field::Pose { rotation: quaternion(bone.rotate), translation: bone.at.into() },
         joint: bone.joint.into(),
         parent: bone.parent.as_deref().and_then(|parent| pose.bone(parent)),
     });

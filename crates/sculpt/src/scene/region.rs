@@ -6,8 +6,8 @@ use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::{self as mesh, Aabb, Distance};
 
-use super::{profile, rotation};
-use crate::recipe::{InnerRegion, RecipeError, RecipeProblem, Region};
+use super::profile::profile;
+use crate::recipe::{InnerRegion, RecipeError, RecipeProblem, Region, rotation::quaternion};
 
 /// The stroke that `region` describes, with these tools, for what lies in the box `reference` of the world. The outer error names
 /// a key of the region.
@@ -53,7 +53,7 @@ fn inner(
             (Arc::new(mesh::Capsule::new(region.radius, half.length())?), pose)
         }
         InnerRegion::Tool(region) => {
-            let pose = field::Pose { rotation: rotation(region.rotate), translation: region.at.into() };
+            let pose = field::Pose { rotation: quaternion(region.rotate), translation: region.at.into() };
             (tools[region.tool.as_str()].shared_distance(), pose)
         }
     })

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, sync::Arc};
 use glam::{DVec2, DVec3};
 use isochore_field as field;
 
-use super::profile;
+use super::profile::profile;
 use crate::recipe::{Ring, Strip, StripMode};
 
 /// The strip that a recipe describes, which is valid and whose curve files have been put in.

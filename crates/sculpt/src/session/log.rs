@@ -9,7 +9,7 @@ use isochore_mesh::Monitor;
 use super::{Session, SessionError, SessionTool, StrokeOptions, StrokeReceipt};
 use crate::{
     recipe::{Integrate, Key, Move, Recipe, Refine, Stroke, Volume},
-    replay::{Meshes, ReplayError},
+    scene::{Meshes, SceneError},
 };
 
 /// A stroke as the log tells of it.
@@ -28,7 +28,7 @@ pub(super) struct LoggedStroke {
 pub enum SessionReplayError {
     /// A tool cannot be made, or the recipe is wrong in itself.
     #[error(transparent)]
-    Recipe(#[from] ReplayError),
+    Recipe(#[from] SceneError),
     /// Only moves of tools can be strokes of a session.
     #[error("stroke.{index} is of kind `{kind}`, and a session only moves tools")]
     Kind {
@@ -109,7 +109,7 @@ impl Session {
         options: &StrokeOptions,
         monitor: &dyn Monitor,
     ) -> Result<Vec<StrokeReceipt>, SessionReplayError> {
-        recipe.validate().map_err(ReplayError::from)?;
+        recipe.validate().map_err(SceneError::from)?;
         let mut tools: BTreeMap<&str, Arc<SessionTool>> = BTreeMap::new();
         let mut receipts = Vec::new();
         for (index, stroke) in recipe.strokes.iter().enumerate() {
@@ -120,13 +120,14 @@ impl Session {
             let tool = match tools.get(name) {
                 Some(tool) => Arc::clone(tool),
                 None => {
-                    let tool = SessionTool::new(name, recipe.tools[name].clone(), meshes, monitor)?;
+                    let tool = SessionTool::new(name, recipe.tools[name].clone(), meshes, monitor)
+                        .map_err(SceneError::from)?;
                     Arc::clone(tools.entry(name).or_insert(Arc::new(tool)))
                 }
             };
             let made = self.replay_move(&tool, motion, options, monitor);
             receipts.push(made.map_err(|error| match error {
-                Failure::Cancelled(cancelled) => SessionReplayError::Recipe(cancelled.into()),
+                Failure::Cancelled(cancelled) => SessionReplayError::Recipe(SceneError::Cancelled(cancelled)),
                 Failure::Session(source) => SessionReplayError::Stroke { index, source },
             })?);
         }

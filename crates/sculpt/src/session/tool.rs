@@ -7,8 +7,7 @@ use isochore_mesh::Monitor;
 
 use crate::{
     recipe,
-    replay::{Meshes, ReplayError},
-    scene::Scene,
+    scene::{BuildToolError, Meshes, build_tool},
 };
 
 /// A tool ready to work, with the plain data that the log writes down. Made once and shared between strokes and sessions.
@@ -25,14 +24,14 @@ impl SessionTool {
     /// which takes from milliseconds to seconds.
     ///
     /// # Errors
-    /// [`ReplayError`], with the key as in a recipe that calls the tool `name`.
+    /// [`BuildToolError`], with the key as in a recipe that calls the tool `name`.
     pub fn new(
         name: &str,
         description: recipe::Tool,
         meshes: &Meshes,
         monitor: &dyn Monitor,
-    ) -> Result<Self, ReplayError> {
-        let (tool, warnings) = Scene::tool(name, &description, meshes, monitor)?;
+    ) -> Result<Self, BuildToolError> {
+        let (tool, warnings) = build_tool(name, &description, meshes, monitor)?;
         Ok(Self { name: name.to_owned(), description, tool: Arc::new(tool), warnings })
     }
 
