@@ -1,24 +1,25 @@
-//! The camera, and the view that it takes of a subject.
+//! The camera, and the projection of a subject onto the picture plane.
 
 use glam::DVec3;
 use isochore_mesh::Aabb;
 
-/// Share of the panel's half width and half height that the subject may fill.
+/// Fraction of the panel's half width and half height that the subject may fill.
 const FILL: f64 = 0.92;
 
-/// Smallest subject radius, as a share of its largest coordinate: below this, differences of coordinates are rounding.
+/// Smallest subject radius relative to its largest coordinate. Smaller: differences of coordinates are
+/// rounding errors. Larger: small subjects far from the origin do not fill the panel.
 const SMALLEST_SUBJECT: f64 = 1e-9;
 
-/// Where the pictures are taken from. The distance to the subject follows from the field of view.
+/// Direction and field of view of all panels. The distance to the subject follows from these.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// From the subject toward the eye, any length.
+    /// Direction from the subject toward the eye, of any length.
     pub direction: DVec3,
-    /// Shown upward, any length.
+    /// Direction that points upward in the picture, of any length.
     pub up: DVec3,
-    /// Angle between the upper and the lower edge of a panel, in degrees, from 1 to 120.
+    /// Vertical field of view of a panel, in degrees, clamped to 1 to 120.
     pub field_of_view: f64,
-    /// What shall fill the panel; by default everything that any panel shows.
+    /// Box to fit into the panel. `None`: all bodies of all panels.
     pub bounds: Option<Aabb>,
 }
 
@@ -29,13 +30,14 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// A camera that looks at the subject from `direction`, with z up.
+    /// Creates a camera that looks at the subject from `direction`, with z up.
     pub fn from_direction(direction: DVec3) -> Self {
         Self { direction, ..Self::default() }
     }
 }
 
-/// A camera that stands: world to view coordinates (x right, y up, z toward the eye) and to the picture plane.
+/// A camera fitted to a subject. Converts world coordinates to view coordinates (x right, y up, z toward
+/// the eye) and to the picture plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View {
     eye: DVec3,
@@ -45,7 +47,7 @@ pub(crate) struct View {
     /// Half width and half height of the picture plane at distance one.
     half_width: f64,
     half_height: f64,
-    /// Depths between which the subject lies, along the line of sight.
+    /// Range of depths of the subject, along the line of sight.
     near: f64,
     far: f64,
     /// Radius of the subject, model units.
@@ -57,12 +59,12 @@ pub(crate) struct View {
 pub(crate) struct Projected {
     /// From -1 at the left to 1 at the right, and from -1 at the bottom to 1 at the top.
     pub(crate) plane: [f64; 2],
-    /// Distance along the line of sight, model units; positive before the eye.
+    /// Distance along the line of sight, model units; positive in front of the eye.
     pub(crate) depth: f64,
 }
 
 impl View {
-    /// Stands `camera` so that `points` just fill a panel of `aspect` (width over height).
+    /// Places `camera` so that `points` just fill a panel with the given `aspect` (width over height).
     pub(crate) fn fit(camera: &Camera, points: impl Iterator<Item = DVec3> + Clone, aspect: f64) -> Self {
         let bounds = Aabb::of(points.clone());
         let (center, extent) =
@@ -95,61 +97,64 @@ impl View {
         view
     }
 
-    /// The nearest eye whose panel holds all `points`: in each of the two directions of the plane the edges of the panel
-    /// are two planes through the eye, pushed outward until no point lies beyond.
+    /// The nearest eye position whose panel contains all `points`.
+    ///
+    /// In each direction of the picture plane, the two edges of the panel are planes through the eye.
+    /// Both are moved outward until all points are between them.
     fn tightest_eye(&self, points: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
-        let reach = |axis: DVec3, slope: f64| {
-            points.clone().fold(f64::NEG_INFINITY, |most, point| {
+        let farthest = |axis: DVec3, slope: f64| {
+            points.clone().fold(f64::NEG_INFINITY, |max, point| {
                 let local = point - self.eye;
-                most.max(local.dot(axis) + slope * local.dot(self.back))
+                max.max(local.dot(axis) + slope * local.dot(self.back))
             })
         };
         let fit = |axis: DVec3, slope: f64| {
-            let (above, below) = (reach(axis, slope), reach(-axis, slope));
+            let (above, below) = (farthest(axis, slope), farthest(-axis, slope));
             let (above, below) = if above.is_finite() { (above, below) } else { (self.radius, self.radius) };
             (0.5 * (above - below), 0.5 * (above + below) / slope)
         };
         let (x, distance_x) = fit(self.right, FILL * self.half_width);
         let (y, distance_y) = fit(self.up, FILL * self.half_height);
-        // A lone point would put the eye inside it.
+        // A single point gives distance zero; keep the eye outside the subject.
         let distance = distance_x.max(distance_y).max(self.radius);
         self.eye + x * self.right + y * self.up + distance * self.back
     }
 
-    /// World point to view coordinates relative to the eye.
+    /// Converts a world point to view coordinates relative to the eye.
     pub(crate) fn local(&self, point: DVec3) -> DVec3 {
         self.turned(point - self.eye)
     }
 
-    /// World direction to view coordinates.
+    /// Converts a world direction to view coordinates.
     pub(crate) fn turned(&self, direction: DVec3) -> DVec3 {
         DVec3::new(direction.dot(self.right), direction.dot(self.up), direction.dot(self.back))
     }
 
-    /// World point to the picture plane.
+    /// Projects a world point onto the picture plane.
     pub(crate) fn project(&self, point: DVec3) -> Projected {
         let local = self.local(point);
         let depth = -local.z;
         Projected { plane: [local.x / (depth * self.half_width), local.y / (depth * self.half_height)], depth }
     }
 
-    /// The view coordinates of a point of the picture plane at `depth`.
+    /// View coordinates of the point at `depth` that projects to `plane`.
     pub(crate) fn unproject(&self, plane: [f64; 2], depth: f64) -> DVec3 {
         DVec3::new(plane[0] * depth * self.half_width, plane[1] * depth * self.half_height, -depth)
     }
 
-    /// Share of a panel's height that `length` takes up at `depth`.
-    pub(crate) fn share_of_height(&self, length: f64, depth: f64) -> f64 {
+    /// Fraction of a panel's height that `length` covers at `depth`.
+    pub(crate) fn fraction_of_height(&self, length: f64, depth: f64) -> f64 {
         0.5 * length / (depth * self.half_height)
     }
 
-    /// Smallest depth that is drawn: nothing at or behind the eye has an image.
+    /// Smallest depth that is drawn. Points at or behind the eye have no image.
     pub(crate) fn nearest_depth(&self) -> f64 {
         1e-3 * self.radius
     }
 
-    /// Depth as the rasterizer orders it: linear in the reciprocal, so that it is linear on the picture plane; 0 at the
-    /// near end of the subject and 1 at the far end.
+    /// Depth value for the rasterizer: 0 at the near end of the subject and 1 at the far end.
+    ///
+    /// It is linear in the reciprocal of the depth, and therefore linear on the picture plane.
     pub(crate) fn order(&self, depth: f64) -> f64 {
         let (near, far) = (self.near.max(self.nearest_depth()), self.far);
         (1.0 / near - 1.0 / depth) / (1.0 / near - 1.0 / far)
@@ -161,16 +166,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn subject_fills_the_panel_in_one_direction_and_stays_inside_in_the_other() {
+    fn subject_fills_the_panel_in_one_direction_and_fits_in_the_other() {
         let points = [DVec3::ZERO, DVec3::new(4.0, 1.0, 0.5), DVec3::new(1.0, 3.0, -2.0), DVec3::new(-1.0, 0.2, 2.0)];
         for direction in [DVec3::X, DVec3::new(1.0, -2.0, 0.7), DVec3::Z, -DVec3::Z] {
             let view = View::fit(&Camera::from_direction(direction), points.iter().copied(), 1.5);
-            let most = points
+            let max = points
                 .iter()
                 .flat_map(|&point| view.project(point).plane)
-                .fold(0.0, |most: f64, coordinate| most.max(coordinate.abs()));
+                .fold(0.0, |max: f64, coordinate| max.max(coordinate.abs()));
             // Two points touch the margin exactly, up to rounding.
-            assert!((most - FILL).abs() < 1e-12, "{direction}: {most}");
+            assert!((max - FILL).abs() < 1e-12, "{direction}: {max}");
         }
     }
 

@@ -1,4 +1,4 @@
-//! Visibility: which triangle is seen at each sample of a panel.
+//! Visibility: the triangle in front at each sample of a panel.
 
 use euc::{
     Interpolate, Pipeline,
@@ -9,37 +9,38 @@ use euc::{
 use crate::camera::Projected;
 use crate::camera::View;
 
-/// Triangles whose image is smaller than this are not drawn (squares of half panel sizes). Far below a sample, so that
-/// nothing visible is lost if larger by ten; if much smaller, reciprocals of areas overflow single precision.
+/// Triangles with a smaller projected area (in units of half the panel size, squared) are not drawn.
+/// Larger: up to ten times this value, no visible triangle is lost. Smaller: reciprocals of areas
+/// overflow single precision.
 const SMALLEST_IMAGE: f64 = 1e-10;
 
-/// What is seen at a sample.
+/// Point of a triangle that is visible at a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fragment {
     /// Index of the triangle.
     pub(crate) triangle: u32,
-    /// Shares of the three corners, on the picture plane.
-    pub(crate) shares: [f32; 3],
+    /// Barycentric weights of the three corners, linear on the picture plane.
+    pub(crate) weights: [f32; 3],
 }
 
-/// What is seen at the samples of a panel, row by row from the top.
+/// Visible points at the samples of a panel, row by row from the top.
 pub(crate) struct Fragments {
-    /// Samples in a row.
+    /// Samples per row.
     pub(crate) width: usize,
     /// Rows of samples.
     pub(crate) height: usize,
-    seen: Buffer2d<Option<Fragment>>,
+    visible: Buffer2d<Option<Fragment>>,
 }
 
 impl Fragments {
-    /// Draws triangles whose vertices have been projected.
+    /// Rasterizes triangles whose vertices have been projected.
     pub(crate) fn draw(
         view: &View,
         vertices: &[Projected],
         triangles: &[[u32; 3]],
         [width, height]: [usize; 2],
     ) -> Self {
-        let mut seen = Buffer2d::new([width, height], None);
+        let mut visible = Buffer2d::new([width, height], None);
         let mut depth = Buffer2d::new([width, height], f32::INFINITY);
         let corners: Vec<Corner> = triangles
             .iter()
@@ -47,31 +48,31 @@ impl Fragments {
             .filter_map(|(index, triangle)| {
                 let corners = triangle.map(|vertex| vertices[vertex as usize]);
                 has_image(view, &corners).then(|| {
-                    let mut place = 0;
+                    let mut number = 0;
                     corners.map(|corner| {
-                        let shares = std::array::from_fn(|i| if i == place { 1.0 } else { 0.0 });
-                        place += 1;
+                        let weights = std::array::from_fn(|i| if i == number { 1.0 } else { 0.0 });
+                        number += 1;
                         let [x, y] = corner.plane.map(|coordinate| coordinate as f32);
                         let position = [x, y, view.order(corner.depth) as f32, 1.0];
-                        Corner { position, fragment: Fragment { triangle: index as u32, shares } }
+                        Corner { position, fragment: Fragment { triangle: index as u32, weights } }
                     })
                 })
             })
             .flatten()
             .collect();
-        Visibility.draw::<Triangles<_, BackfaceCullingDisabled>, _>(&corners, &mut seen, Some(&mut depth));
-        Self { width, height, seen }
+        Visibility.draw::<Triangles<_, BackfaceCullingDisabled>, _>(&corners, &mut visible, Some(&mut depth));
+        Self { width, height, visible }
     }
 
     /// The samples of `row`.
     pub(crate) fn row(&self, row: usize) -> &[Option<Fragment>] {
-        &self.seen.as_ref()[row * self.width..(row + 1) * self.width]
+        &self.visible.as_ref()[row * self.width..(row + 1) * self.width]
     }
 }
 
-/// Whether a triangle lies before the eye, near the panel, and large enough to be drawn.
+/// Returns true if a triangle is in front of the eye, near the panel, and large enough to be drawn.
 fn has_image(view: &View, corners: &[Projected; 3]) -> bool {
-    // Images farther out than this leave the range in which the rasterizer's integers are exact.
+    // Beyond this distance from the panel, the rasterizer's integers are not exact.
     const FARTHEST_OUT: f64 = 1e3;
     let [a, b, c] = corners.map(|corner| corner.plane);
     let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -104,11 +105,11 @@ impl Pipeline for Visibility {
 
 impl Interpolate for Fragment {
     fn lerp2(a: Self, b: Self, x: f32, y: f32) -> Self {
-        Self { triangle: a.triangle, shares: std::array::from_fn(|i| a.shares[i] * x + b.shares[i] * y) }
+        Self { triangle: a.triangle, weights: std::array::from_fn(|i| a.weights[i] * x + b.weights[i] * y) }
     }
 
     fn lerp3(a: Self, b: Self, c: Self, x: f32, y: f32, z: f32) -> Self {
-        let shares = std::array::from_fn(|i| a.shares[i] * x + b.shares[i] * y + c.shares[i] * z);
-        Self { triangle: a.triangle, shares }
+        let weights = std::array::from_fn(|i| a.weights[i] * x + b.weights[i] * y + c.weights[i] * z);
+        Self { triangle: a.triangle, weights }
     }
 }

@@ -1,11 +1,21 @@
-//! Shaded pictures of triangle meshes, drawn in software: no window, no graphics card, the same bytes everywhere.
+//! Shaded pictures of triangle meshes, rendered in software.
 //!
-//! Terms used throughout:
+//! Rendering needs neither a window nor a graphics card. The same input gives the same bytes on every
+//! machine and for any number of threads.
 //!
-//! - A [`Body`] is a mesh with its paint; polylines and arrows are bodies too, made of thin tubes.
-//! - A [`Panel`] shows bodies above a caption. Panels of one picture stand side by side and share one [`Camera`], so that
-//!   two states of the same body can be compared.
-//! - A *sample* is one point of the picture plane at which visibility is decided; a pixel is the mean of several.
+//! # Terms
+//!
+//! - A [`Body`] is a mesh with a [`Paint`]. Polylines and arrows are bodies too: their meshes are
+//!   thin tubes.
+//! - A [`Panel`] shows bodies above a caption. The panels of a picture are placed side by side and
+//!   use the same [`Camera`], so that two states of one body can be compared.
+//! - A *sample* is a point of the picture plane at which visibility is determined. A pixel is the
+//!   mean of several samples.
+//!
+//! Positions and lengths are in model units. Colors are linear RGB from 0 to 1; the pixels of a
+//! [`Picture`] are sRGB.
+//!
+//! # Render a mesh
 //!
 //! ```
 //! use glam::DVec3;
@@ -24,11 +34,14 @@
 //! # Ok::<(), isochore_picture::PictureError>(())
 //! ```
 //!
-//! What is not guaranteed: bodies that reach behind the eye of a camera given by [`Camera::bounds`] lose the triangles
-//! there, and transparency is not drawn.
+//! # Limits
+//!
+//! If [`Camera::bounds`] places the eye inside a body, the triangles behind the eye are not drawn.
+//! Transparency and shadows are not rendered.
 
 mod camera;
 mod caption;
+mod error;
 mod fragments;
 mod normals;
 mod panel;
@@ -37,5 +50,6 @@ mod shading;
 mod tube;
 
 pub use camera::Camera;
+pub use error::PictureError;
 pub use panel::{Body, Paint, Panel};
-pub use picture::{Options, Picture, PictureError, render};
+pub use picture::{Options, Picture, render};

@@ -1,4 +1,4 @@
-//! Shading normals at corners: smooth over gentle bends, apart at creases.
+//! Shading normals at triangle corners: smooth across gentle bends, separate at creases.
 
 use glam::DVec3;
 use isochore_mesh::TriMesh;
@@ -6,8 +6,9 @@ use rayon::prelude::*;
 
 /// Unit shading normals of the three corners of each triangle.
 ///
-/// A corner's normal is the mean of the face normals round its vertex, weighted by the angle each face has there, taken
-/// over the faces that turn from the corner's own by less than `crease_angle` (degrees). Faces without area give zero.
+/// The normal of a corner is the mean of the normals of the faces at its vertex, weighted by their corner
+/// angles. Only faces whose normal differs from that of the corner's own face by at most `crease_angle`
+/// (degrees) count. Faces with zero area have a zero normal.
 pub(crate) fn corner_normals(mesh: &TriMesh, crease_angle: f64) -> Vec<[DVec3; 3]> {
     let faces: Vec<Face> = mesh.triangles.par_iter().map(|triangle| Face::of(mesh, triangle)).collect();
     let around = CornersAround::of(mesh);
@@ -50,7 +51,7 @@ impl Face {
     }
 }
 
-/// For each vertex the corners that use it, as triangle times three plus place.
+/// The corners at each vertex; corner `c` is corner `c % 3` of triangle `c / 3`.
 struct CornersAround {
     first: Vec<u32>,
     corners: Vec<u32>,
@@ -92,8 +93,8 @@ mod tests {
     }
 
     #[test]
-    fn gentle_ridge_is_smooth_and_sharp_ridge_is_not() {
-        // The two faces turn by 2 atan(height): 11.4 and 90 degrees.
+    fn gentle_ridge_is_smooth_and_sharp_ridge_is_a_crease() {
+        // The normals of the two faces differ by 2 atan(height): 11.4 and 90 degrees.
         let gentle = corner_normals(&roof(0.1), 40.0);
         assert!(gentle[0][0].distance(DVec3::Z) < 1e-12);
         assert!(gentle[0][0].distance(gentle[1][1]) < 1e-12);

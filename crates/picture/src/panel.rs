@@ -1,4 +1,4 @@
-//! What a panel shows.
+//! Panels and the bodies that they show.
 
 use std::borrow::Cow;
 
@@ -7,10 +7,10 @@ use isochore_mesh::TriMesh;
 
 use crate::tube;
 
-/// The color of fired clay, linear RGB: the paint of a body that has none of its own.
+/// Default paint of a body: the color of fired clay, linear RGB.
 const CLAY: DVec3 = DVec3::new(0.58, 0.33, 0.21);
 
-/// A mesh and how it is painted.
+/// A mesh with its paint.
 #[derive(Debug, Clone)]
 pub struct Body<'a> {
     pub(crate) mesh: Cow<'a, TriMesh>,
@@ -20,39 +20,51 @@ pub struct Body<'a> {
 /// Colors of a body's surface, linear RGB from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint<'a> {
-    /// One color all over.
+    /// One color for the whole body.
     Uniform(DVec3),
-    /// One color a vertex, blended in between.
+    /// One color per vertex, interpolated across triangles.
     Vertices(&'a [DVec3]),
-    /// One color a triangle.
+    /// One color per triangle.
     Triangles(&'a [DVec3]),
 }
 
 impl<'a> Body<'a> {
-    /// A body in the color of clay.
+    /// Creates a body in the color of clay.
     pub fn new(mesh: &'a TriMesh) -> Self {
         Self { mesh: Cow::Borrowed(mesh), paint: Paint::Uniform(CLAY) }
     }
 
-    /// The same body in other colors.
+    /// Replaces the paint.
     pub fn with_paint(self, paint: Paint<'a>) -> Self {
         Self { paint, ..self }
     }
 
-    /// A polyline as a tube of `radius` (model units), in one linear RGB `color`. Fewer than two distinct points give
-    /// nothing to see.
+    /// Creates a tube of `radius` (model units) around a polyline, in one linear RGB `color`. The body is
+    /// empty if there are fewer than two distinct points.
+    ///
+    /// # Examples
+    /// ```
+    /// use glam::DVec3;
+    /// use isochore_picture::{Body, Camera, Options, Panel, render};
+    ///
+    /// let path = Body::polyline(&[DVec3::ZERO, DVec3::X, DVec3::ONE], 0.02, DVec3::new(0.1, 0.2, 0.6));
+    /// let options = Options { width: 64, height: 64, ..Options::default() };
+    /// let picture = render(&[Panel::new("path").with(path)], &Camera::default(), &options)?;
+    /// assert_eq!((picture.width(), picture.height()), (64, 64));
+    /// # Ok::<(), isochore_picture::PictureError>(())
+    /// ```
     pub fn polyline(points: &[DVec3], radius: f64, color: DVec3) -> Body<'static> {
         Body { mesh: Cow::Owned(tube::polyline(points, radius)), paint: Paint::Uniform(color) }
     }
 
-    /// Arrows from each first to each second point, with shafts of `radius` (model units), in one linear RGB `color`.
-    /// An arrow without length is left out.
+    /// Creates arrows from the first point of each pair to the second, with shafts of `radius` (model
+    /// units), in one linear RGB `color`. Arrows of zero length are omitted.
     pub fn arrows(arrows: &[(DVec3, DVec3)], radius: f64, color: DVec3) -> Body<'static> {
         Body { mesh: Cow::Owned(tube::arrows(arrows, radius)), paint: Paint::Uniform(color) }
     }
 }
 
-/// One of the fields of a picture: bodies and a caption below them.
+/// One panel of a picture: bodies with a caption below them.
 #[derive(Debug, Clone, Default)]
 pub struct Panel<'a> {
     pub(crate) bodies: Vec<Body<'a>>,
@@ -60,12 +72,13 @@ pub struct Panel<'a> {
 }
 
 impl<'a> Panel<'a> {
-    /// An empty panel. Lines of the `caption` are separated by `\n`; an empty one takes no room.
+    /// Creates a panel without bodies. Lines of the `caption` are separated by `\n`. An empty caption takes no
+    /// space.
     pub fn new(caption: impl Into<String>) -> Self {
         Self { bodies: Vec::new(), caption: caption.into() }
     }
 
-    /// This panel with one more body.
+    /// Adds a body.
     pub fn with(mut self, body: Body<'a>) -> Self {
         self.bodies.push(body);
         self

@@ -1,33 +1,37 @@
-//! Panels to pixels.
+//! Layout of the panels in a picture, and the pixels of the result.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::camera::{Camera, View};
 use crate::caption::Type;
+use crate::error::PictureError;
 use crate::panel::Panel;
 use crate::shading::{Shading, Surface};
 
-/// Largest width and height of a picture, and its largest number of samples, so that a slip of the hand does not ask for
-/// all memory.
+/// Largest width and height of a picture, pixels. Larger: a typing error requests all memory.
+/// Smaller: posters are rejected.
 const LARGEST_SIDE: usize = 16_384;
+/// Largest number of samples of a picture, with the same trade-off.
 const MOST_SAMPLES: usize = 200_000_000;
 
-/// Background at the top and at the bottom of each panel, linear RGB, and the ink of captions.
+/// Linear RGB of the background at the top and at the bottom of each panel.
 const BACKGROUND: [DVec3; 2] = [DVec3::new(0.93, 0.94, 0.95), DVec3::new(0.70, 0.72, 0.75)];
+/// Linear RGB behind captions and between panels.
 const PAPER: DVec3 = DVec3::new(0.93, 0.94, 0.95);
+/// Linear RGB of caption text.
 const INK: DVec3 = DVec3::new(0.03, 0.035, 0.045);
 
-/// How a picture is drawn.
+/// Size and quality of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Width of the whole picture, pixels.
     pub width: usize,
     /// Height of the whole picture, pixels, captions included.
     pub height: usize,
-    /// Samples a pixel, in each direction.
+    /// Samples per pixel, in each direction.
     pub samples: usize,
-    /// Neighboring faces that turn by more than this (degrees) meet in a crisp edge.
+    /// Angle in degrees: an edge is shaded as a crease if its two faces differ by more than this.
     pub crease_angle: f64,
 }
 
@@ -37,52 +41,7 @@ impl Default for Options {
     }
 }
 
-/// Why a picture cannot be drawn.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum PictureError {
-    /// There is nothing to draw into, or too much.
-    #[error("a picture of {width} x {height} pixels with {samples} x {samples} samples each is empty or too large")]
-    Size {
-        /// Width asked for, pixels.
-        width: usize,
-        /// Height asked for, pixels.
-        height: usize,
-        /// Samples a pixel asked for, in each direction.
-        samples: usize,
-    },
-    /// The panels or their captions leave no room for what they show.
-    #[error("{panels} panels with their captions do not fit into the picture")]
-    Panels {
-        /// Number of panels.
-        panels: usize,
-    },
-    /// A triangle uses a vertex that does not exist.
-    #[error("panel {panel}, body {body}: triangle {triangle} uses vertex {vertex}, which does not exist")]
-    Index {
-        /// Panel, from 0.
-        panel: usize,
-        /// Body in the panel, from 0.
-        body: usize,
-        /// Triangle of the body's mesh.
-        triangle: usize,
-        /// The vertex that is missing.
-        vertex: u32,
-    },
-    /// A list of colors does not go with its mesh.
-    #[error("panel {panel}, body {body}: {colors} colors for {elements} elements")]
-    Colors {
-        /// Panel, from 0.
-        panel: usize,
-        /// Body in the panel, from 0.
-        body: usize,
-        /// Length of the list.
-        colors: usize,
-        /// Vertices or triangles of the mesh.
-        elements: usize,
-    },
-}
-
-/// A drawn picture: rows from the top, sRGB.
+/// A rendered picture: sRGB pixels, row by row from the top.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Picture {
     width: usize,
@@ -106,7 +65,7 @@ impl Picture {
         &self.pixels
     }
 
-    /// The picture as a PNG file.
+    /// Encodes the picture as a PNG file.
     pub fn to_png(&self) -> Vec<u8> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.width as u32, self.height as u32);
@@ -115,17 +74,34 @@ impl Picture {
         encoder
             .write_header()
             .and_then(|mut writer| writer.write_image_data(self.pixels.as_flattened()))
-            .expect("a picture is neither empty nor too large, and memory takes all bytes");
+            .expect("the size is valid, and writing to memory cannot fail");
         file
     }
 }
 
-/// Draws `panels` side by side, all through the same camera.
+/// Renders `panels` side by side with one camera.
 ///
-/// Triangles with a coordinate that is not finite, without area, or behind the eye are left out.
+/// Triangles are skipped if a coordinate is not finite, if their area is zero, or if they are behind
+/// the eye.
 ///
 /// # Errors
-/// [`PictureError`] where sizes, indices or lists of colors do not fit.
+/// - [`PictureError::Size`] if the picture is empty or too large.
+/// - [`PictureError::Panels`] if there are no panels or they do not fit.
+/// - [`PictureError::Index`] if a triangle uses a vertex that does not exist.
+/// - [`PictureError::Colors`] if a list of colors does not have one color per element.
+///
+/// # Examples
+/// ```
+/// use isochore_mesh::primitives;
+/// use isochore_picture::{Body, Camera, Options, Panel, render};
+///
+/// let (before, after) = (primitives::icosphere(1.0, 2), primitives::icosphere(1.2, 2));
+/// let panels = [Panel::new("before").with(Body::new(&before)), Panel::new("after").with(Body::new(&after))];
+/// let options = Options { width: 160, height: 90, ..Options::default() };
+/// let picture = render(&panels, &Camera::default(), &options)?;
+/// assert_eq!(picture.pixels().len(), 160 * 90);
+/// # Ok::<(), isochore_picture::PictureError>(())
+/// ```
 pub fn render(panels: &[Panel], camera: &Camera, options: &Options) -> Result<Picture, PictureError> {
     let layout = Layout::of(panels, options)?;
     let surfaces = panels
@@ -146,21 +122,21 @@ pub fn render(panels: &[Panel], camera: &Camera, options: &Options) -> Result<Pi
         height: options.height,
         pixels: vec![to_srgb(PAPER); options.width * options.height],
     };
-    let drawn: Vec<Vec<DVec3>> = surfaces
+    let rendered: Vec<Vec<DVec3>> = surfaces
         .par_iter()
         .map(|surface| {
             let size = [layout.panel_width, layout.panel_height];
             Shading::new(surface, &view, size, options.samples).pixels(&backdrop)
         })
         .collect();
-    for (index, (panel, colors)) in panels.iter().zip(drawn).enumerate() {
-        layout.place(index, &colors, &mut picture);
+    for (index, (panel, colors)) in panels.iter().zip(rendered).enumerate() {
+        layout.copy_pixels(index, &colors, &mut picture);
         layout.write_caption(index, &panel.caption, &mut picture);
     }
     Ok(picture)
 }
 
-/// Where the panels stand in the picture.
+/// Positions of the panels in the picture.
 struct Layout {
     panel_width: usize,
     panel_height: usize,
@@ -179,23 +155,24 @@ impl Layout {
         if !fits {
             return Err(PictureError::Size { width, height, samples });
         }
-        let crowded = PictureError::Panels { panels: panels.len() };
+        let do_not_fit = PictureError::Panels { panels: panels.len() };
         let gaps = Self::GAP * panels.len().saturating_sub(1);
-        let panel_width = width.saturating_sub(gaps).checked_div(panels.len()).ok_or(crowded.clone())?;
+        let panel_width = width.saturating_sub(gaps).checked_div(panels.len()).ok_or(do_not_fit.clone())?;
         let lettering = Type::for_width(panel_width);
-        let room = panels.iter().map(|panel| lettering.room(&panel.caption)).max().unwrap_or(0);
-        let panel_height = height.saturating_sub(room);
+        let caption_height = panels.iter().map(|panel| lettering.height_of(&panel.caption)).max().unwrap_or(0);
+        let panel_height = height.saturating_sub(caption_height);
         if panel_width == 0 || panel_height == 0 {
-            return Err(crowded);
+            return Err(do_not_fit);
         }
         Ok(Self { panel_width, panel_height, lettering })
     }
 
+    /// Column of the left edge of a panel.
     fn left(&self, panel: usize) -> usize {
         panel * (self.panel_width + Self::GAP)
     }
 
-    fn place(&self, panel: usize, colors: &[DVec3], picture: &mut Picture) {
+    fn copy_pixels(&self, panel: usize, colors: &[DVec3], picture: &mut Picture) {
         for (row, colors) in colors.chunks_exact(self.panel_width).enumerate() {
             let start = row * picture.width + self.left(panel);
             for (pixel, &color) in picture.pixels[start..start + self.panel_width].iter_mut().zip(colors) {
@@ -205,21 +182,21 @@ impl Layout {
     }
 
     fn write_caption(&self, panel: usize, caption: &str, picture: &mut Picture) {
-        self.lettering.set(caption, self.panel_width, |column, row, share| {
+        self.lettering.set(caption, self.panel_width, |column, row, coverage| {
             let (x, y) = (self.left(panel) + column, self.panel_height + row);
             if let Some(pixel) = picture.pixels.get_mut(y * picture.width + x) {
-                *pixel = to_srgb(PAPER.lerp(INK, share));
+                *pixel = to_srgb(PAPER.lerp(INK, coverage));
             }
         });
     }
 }
 
-/// The background's color at a share of the panel's height, from 0 at the top to 1 at the bottom.
+/// Background color at a relative height, from 0 at the top of the panel to 1 at the bottom.
 fn backdrop(height: f64) -> DVec3 {
     BACKGROUND[0].lerp(BACKGROUND[1], height * height)
 }
 
-/// Linear RGB to sRGB (IEC 61966-2-1).
+/// Converts linear RGB to sRGB (IEC 61966-2-1).
 fn to_srgb(color: DVec3) -> [u8; 3] {
     color.to_array().map(|linear| {
         let linear = linear.clamp(0.0, 1.0);
@@ -238,7 +215,7 @@ mod tests {
 
     const SMALL: Options = Options { width: 200, height: 100, samples: 2, crease_angle: 55.0 };
 
-    /// A square in the plane through the origin that faces the default camera, half a unit to each side.
+    /// A unit square centered at the origin that faces the default camera.
     fn square() -> TriMesh {
         let turn = DQuat::from_rotation_arc(DVec3::Z, Camera::default().direction.normalize());
         TriMesh {
@@ -251,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn nearer_body_hides_the_farther_one_in_any_order() {
+    fn nearer_body_hides_the_farther_one_in_either_order() {
         let far = square();
         let mut near = square();
         for position in &mut near.positions {
@@ -268,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn panels_share_the_camera() {
+    fn panels_use_one_camera() {
         let small = square();
         let mut large = square();
         large.positions.iter_mut().for_each(|position| *position *= 10.0);
@@ -279,19 +256,19 @@ mod tests {
             (0..100).map(|y| picture.pixels()[y * 200 + from..y * 200 + to].iter().filter(|p| is_clay(p)).count()).sum()
         };
         let (small, large): (usize, usize) = (covered(0, 99), covered(101, 200));
-        // The areas are as 1 to 100; the small square covers about 8 x 8 pixels, each edge uncertain by one.
+        // The area ratio is 100. The small square covers about 8 x 8 pixels, each edge uncertain by one pixel.
         assert!(large > 60 * small && large < 160 * small, "{small} {large}");
     }
 
     #[test]
-    fn same_picture_for_any_number_of_threads() {
+    fn picture_does_not_depend_on_the_number_of_threads() {
         let mesh = square();
         let panels = [Panel::new("before").with(Body::new(&mesh)), Panel::new("after\n50 %").with(Body::new(&mesh))];
-        let drawn = [1, 2, 8].map(|threads| {
+        let files = [1, 2, 8].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| render(&panels, &Camera::default(), &SMALL).unwrap().to_png())
         });
-        assert!(drawn[0] == drawn[1] && drawn[0] == drawn[2]);
+        assert!(files[0] == files[1] && files[0] == files[2]);
     }
 
     #[test]
@@ -305,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn input_that_does_not_fit_is_named() {
+    fn errors_name_the_invalid_input() {
         let mut mesh = square();
         let camera = Camera::default();
         let none = Options { width: 0, ..SMALL };
@@ -326,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn hostile_meshes_are_drawn_without_panic() {
+    fn extreme_coordinates_do_not_panic() {
         let huge = f64::MAX;
         let odd = [DVec3::NAN, DVec3::splat(f64::INFINITY), DVec3::splat(huge), DVec3::splat(-huge), DVec3::ZERO];
         for a in odd {

@@ -1,4 +1,4 @@
-//! Light: a key light from the upper left, a headlight, light from the sky, and shade in hollows.
+//! Shading: a key light from the upper left, a headlight, sky light, and ambient obscurance.
 
 use std::sync::LazyLock;
 
@@ -6,34 +6,38 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::camera::{Projected, View};
+use crate::error::PictureError;
 use crate::fragments::{Fragment, Fragments};
 use crate::normals::corner_normals;
 use crate::panel::{Body, Paint, Panel};
-use crate::picture::PictureError;
 
-/// Toward the key light, in view coordinates, and the strengths of the lights.
+/// Direction toward the key light, in view coordinates.
 const KEY: DVec3 = DVec3::new(-0.62, 0.62, 0.48);
+/// Intensities of the lights; those from above and below are linear RGB.
 const KEY_LIGHT: f64 = 0.95;
 const HEAD_LIGHT: f64 = 0.27;
 const SKY_LIGHT: DVec3 = DVec3::new(0.36, 0.39, 0.44);
 const GROUND_LIGHT: DVec3 = DVec3::new(0.17, 0.14, 0.13);
 
-/// Strength of the highlight, and of the sheen on surfaces seen edge-on.
+/// Intensity of the highlight, and of the sheen at grazing angles.
 const GLOSS: f64 = 0.10;
 const SHEEN: f64 = 0.03;
 
-/// The inside of a surface, seen through a hole in it, has this color whatever its paint.
+/// Color of the inside of a surface, visible through holes, for every paint.
 const INSIDE: Vec3 = Vec3::new(0.22, 0.26, 0.34);
 
-/// Hollows are looked for within this share of the subject's radius, at so many places round each pixel.
+/// Radius of the search for occluders, relative to the subject's radius. Larger: shade spreads over
+/// flat areas. Smaller: wide hollows stay bright.
 const HOLLOW_REACH: f64 = 0.14;
+/// Points probed around each pixel. More cost time; fewer show bands.
 const HOLLOW_PROBES: usize = 40;
 /// Strength of the shade in hollows.
 const HOLLOW_SHADE: f64 = 1.5;
-/// Sine of the smallest rise above the tangent plane that counts: smaller values show facets, larger ones miss shallow dents.
+/// Sine of the smallest elevation above the tangent plane that counts. Smaller: facets become visible.
+/// Larger: shallow dents stay bright.
 const SMALLEST_RISE: f64 = 0.12;
 
-/// All that a panel shows, as one list of triangles with normals and colors at their corners.
+/// All bodies of a panel as one list of triangles, with normals and colors at their corners.
 pub(crate) struct Surface {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
@@ -42,7 +46,7 @@ pub(crate) struct Surface {
 }
 
 impl Surface {
-    /// Gathers the bodies of `panel`, which is number `index`.
+    /// Collects the bodies of `panel`, which has number `index`.
     pub(crate) fn of(index: usize, panel: &Panel, crease_angle: f64) -> Result<Self, PictureError> {
         let mut surface = Self { positions: vec![], triangles: vec![], normals: vec![], colors: vec![] };
         for (number, body) in panel.bodies.iter().enumerate() {
@@ -71,13 +75,13 @@ impl Surface {
         self.positions.extend_from_slice(&mesh.positions);
     }
 
-    /// Positions that triangles use; a vertex appears once for each of its corners.
+    /// Positions of all triangle corners.
     pub(crate) fn used_positions(&self) -> impl Iterator<Item = DVec3> + Clone {
         self.triangles.as_flattened().iter().map(|&vertex| self.positions[vertex as usize])
     }
 }
 
-/// That all indices of a body exist and its colors go with its mesh.
+/// Checks that all indices of a body are valid and that it has one color per element.
 fn check(panel: usize, number: usize, body: &Body) -> Result<(), PictureError> {
     let mesh = body.mesh.as_ref();
     for (triangle, vertices) in mesh.triangles.iter().enumerate() {
@@ -112,19 +116,20 @@ struct SurfacePoint {
 }
 
 impl<'a> Shading<'a> {
-    /// Decides what is seen of `surface` in a panel of `width` by `height` pixels.
+    /// Determines the visible points of `surface` in a panel of `width` by `height` pixels.
     pub(crate) fn new(surface: &'a Surface, view: &'a View, [width, height]: [usize; 2], samples: usize) -> Self {
         let projected: Vec<Projected> = surface.positions.par_iter().map(|&position| view.project(position)).collect();
         let fragments = Fragments::draw(view, &projected, &surface.triangles, [width * samples, height * samples]);
         Self { surface, view, projected, fragments, width, height, samples }
     }
 
-    /// Linear RGB of the pixels, row by row from the top, before a `backdrop` that depends on the share of the height.
-    pub(crate) fn pixels(&self, backdrop: &(dyn Fn(f64) -> DVec3 + Sync)) -> Vec<DVec3> {
+    /// Linear RGB of the pixels, row by row from the top. `background` gives the background color at a
+    /// relative height, from 0 at the top to 1 at the bottom.
+    pub(crate) fn pixels(&self, background: &(dyn Fn(f64) -> DVec3 + Sync)) -> Vec<DVec3> {
         let rows: Vec<Vec<DVec3>> = (0..self.height)
             .into_par_iter()
             .map(|row| {
-                let background = backdrop((row as f64 + 0.5) / self.height as f64);
+                let background = background((row as f64 + 0.5) / self.height as f64);
                 (0..self.width).map(|column| self.pixel(column, row, background)).collect()
             })
             .collect();
@@ -133,7 +138,7 @@ impl<'a> Shading<'a> {
 
     fn pixel(&self, column: usize, row: usize, background: DVec3) -> DVec3 {
         let mut sum = DVec3::ZERO;
-        // Hollows are wider than a pixel: one search serves all samples of the pixel that show the surface.
+        // Hollows are wider than a pixel, so one search serves all samples of the pixel.
         let mut openness = None;
         for sample_row in row * self.samples..(row + 1) * self.samples {
             for sample_column in column * self.samples..(column + 1) * self.samples {
@@ -154,11 +159,11 @@ impl<'a> Shading<'a> {
         self.fragments.row(row)[column]
     }
 
-    /// Shares of a fragment's corners on the surface: those on the picture plane, weighted by nearness.
-    fn shares_in_space(&self, fragment: &Fragment) -> [f64; 3] {
+    /// Barycentric weights of a fragment on the surface: those on the picture plane, divided by depth.
+    fn weights_in_space(&self, fragment: &Fragment) -> [f64; 3] {
         let triangle = self.surface.triangles[fragment.triangle as usize];
         let weights: [f64; 3] = std::array::from_fn(|i| {
-            f64::from(fragment.shares[i].max(0.0)) / self.projected[triangle[i] as usize].depth
+            f64::from(fragment.weights[i].max(0.0)) / self.projected[triangle[i] as usize].depth
         });
         let sum = weights[0] + weights[1] + weights[2];
         weights.map(|weight| weight / sum)
@@ -166,10 +171,10 @@ impl<'a> Shading<'a> {
 
     fn point(&self, column: usize, row: usize) -> Option<SurfacePoint> {
         let fragment = self.fragment(column, row)?;
-        let shares = self.shares_in_space(&fragment);
+        let weights = self.weights_in_space(&fragment);
         let index = fragment.triangle as usize;
         let mix = |values: &[Vec3; 3]| {
-            values.iter().zip(shares).fold(DVec3::ZERO, |sum, (value, share)| sum + share * value.as_dvec3())
+            values.iter().zip(weights).fold(DVec3::ZERO, |sum, (value, weight)| sum + weight * value.as_dvec3())
         };
         let position = self.position(column, row, &fragment);
         let normal = self.view.turned(mix(&self.surface.normals[index])).normalize_or(DVec3::Z);
@@ -185,8 +190,8 @@ impl<'a> Shading<'a> {
 
     fn position(&self, column: usize, row: usize, fragment: &Fragment) -> DVec3 {
         let triangle = self.surface.triangles[fragment.triangle as usize];
-        let nearness =
-            (0..3).fold(0.0, |sum, i| sum + f64::from(fragment.shares[i]) / self.projected[triangle[i] as usize].depth);
+        let nearness = (0..3)
+            .fold(0.0, |sum, i| sum + f64::from(fragment.weights[i]) / self.projected[triangle[i] as usize].depth);
         let plane = [
             2.0 * (column as f64 + 0.5) / self.fragments.width as f64 - 1.0,
             1.0 - 2.0 * (row as f64 + 0.5) / self.fragments.height as f64,
@@ -194,14 +199,16 @@ impl<'a> Shading<'a> {
         self.view.unproject(plane, 1.0 / nearness)
     }
 
-    /// How open the sky is above a visible point, from 0 to 1: places on a spiral round it are asked how far the
-    /// surface rises there above the point's tangent plane.
+    /// Openness of the sky above a visible point, from 0 to 1.
     ///
-    /// Source: M. McGuire et al., The Alchemy screen-space ambient obscurance algorithm, 2011; here with a fixed spiral
-    /// in place of random directions, so that no noise has to be smoothed away.
+    /// Probes the surface at points on a spiral around the pixel and sums how far each rises above the
+    /// tangent plane.
+    ///
+    /// Source: M. McGuire et al., The Alchemy screen-space ambient obscurance algorithm, 2011. Deviation:
+    /// a fixed spiral replaces the random directions, so no noise has to be filtered.
     fn openness(&self, column: usize, row: usize, point: &SurfacePoint) -> f64 {
         let reach = HOLLOW_REACH * self.view.radius;
-        let reach_in_samples = self.view.share_of_height(reach, -point.position.z) * self.fragments.height as f64;
+        let reach_in_samples = self.view.fraction_of_height(reach, -point.position.z) * self.fragments.height as f64;
         let mut closed = 0.0;
         for (direction, distance) in SPIRAL.iter() {
             let x = column as f64 + reach_in_samples * distance * direction[0];
@@ -222,7 +229,7 @@ impl<'a> Shading<'a> {
     }
 }
 
-/// Directions and distances (shares of the reach) of the places that are asked for hollows: equal areas of a disk.
+/// Directions and relative distances of the probes, each covering an equal area of a disk.
 static SPIRAL: LazyLock<Vec<([f64; 2], f64)>> = LazyLock::new(|| {
     let golden_angle = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     (0..HOLLOW_PROBES)
@@ -233,7 +240,7 @@ static SPIRAL: LazyLock<Vec<([f64; 2], f64)>> = LazyLock::new(|| {
         .collect()
 });
 
-/// Linear RGB of a visible point whose sky is open to the share `openness`.
+/// Linear RGB of a visible point with the given openness of the sky, from 0 to 1.
 fn light(point: &SurfacePoint, openness: f64) -> DVec3 {
     let toward_eye = -point.position.normalize();
     let key = KEY.normalize();
@@ -241,7 +248,7 @@ fn light(point: &SurfacePoint, openness: f64) -> DVec3 {
     let facing_eye = point.normal.dot(toward_eye).max(0.0);
 
     let sky = GROUND_LIGHT.lerp(SKY_LIGHT, 0.5 + 0.5 * point.normal.y);
-    // Hollows lose all of the sky and some of the directed light, which is in part reflected by their walls.
+    // Hollows receive no sky light but part of the directed light, because their walls reflect it.
     let directed = 0.45 + 0.55 * openness;
     let matte = sky * openness + DVec3::splat(directed * (KEY_LIGHT * facing_key + HEAD_LIGHT * facing_eye));
 
@@ -251,7 +258,7 @@ fn light(point: &SurfacePoint, openness: f64) -> DVec3 {
     point.color * matte + DVec3::splat(openness * highlight + sheen)
 }
 
-/// `value` squared `times` times.
+/// Squares `value` repeatedly, `times` times.
 fn squared_times(value: f64, times: usize) -> f64 {
     (0..times).fold(value, |value, _| value * value)
 }

@@ -1,4 +1,4 @@
-//! Thin tubes: how lines and arrows become meshes.
+//! Tube meshes for lines and arrows.
 
 use glam::{DQuat, DVec3};
 use isochore_mesh::TriMesh;
@@ -6,14 +6,14 @@ use isochore_mesh::TriMesh;
 /// Sides of a tube's cross-section.
 const SIDES: usize = 12;
 
-/// Radius and length of an arrow's head, in radii of its shaft.
+/// Radius and length of an arrow head, in shaft radii.
 const HEAD_RADIUS: f64 = 2.6;
 const HEAD_LENGTH: f64 = 6.5;
 
-/// Largest share of an arrow's length that its head may take.
-const HEAD_SHARE: f64 = 0.5;
+/// Largest fraction of an arrow's length that its head may take.
+const HEAD_FRACTION: f64 = 0.5;
 
-/// A tube round a polyline. Its cross-sections are turned from one to the next by the smallest rotation.
+/// Tube around a polyline. Each cross-section follows from the previous one by the smallest rotation.
 pub(crate) fn polyline(points: &[DVec3], radius: f64) -> TriMesh {
     let mut mesh = TriMesh::default();
     let mut path: Vec<DVec3> = points.iter().copied().filter(|point| point.is_finite()).collect();
@@ -22,7 +22,7 @@ pub(crate) fn polyline(points: &[DVec3], radius: f64) -> TriMesh {
     mesh
 }
 
-/// Arrows, each a shaft and a cone.
+/// Arrows, each consisting of a shaft and a cone.
 pub(crate) fn arrows(arrows: &[(DVec3, DVec3)], radius: f64) -> TriMesh {
     let mut mesh = TriMesh::default();
     for &(from, to) in arrows {
@@ -30,7 +30,7 @@ pub(crate) fn arrows(arrows: &[(DVec3, DVec3)], radius: f64) -> TriMesh {
         if !(length.is_finite() && length > 0.0) {
             continue;
         }
-        let head = (HEAD_LENGTH * radius).min(HEAD_SHARE * length);
+        let head = (HEAD_LENGTH * radius).min(HEAD_FRACTION * length);
         let neck = to - head / length * (to - from);
         let scale = head / (HEAD_LENGTH * radius);
         append_tube(&mut mesh, &[from, neck], &[radius * scale; 2]);
@@ -39,7 +39,7 @@ pub(crate) fn arrows(arrows: &[(DVec3, DVec3)], radius: f64) -> TriMesh {
     mesh
 }
 
-/// A tube whose radius goes linearly from point to point, closed by flat caps.
+/// Appends a tube with flat caps, whose radius varies linearly between points.
 fn append_tube(mesh: &mut TriMesh, path: &[DVec3], radii: &[f64]) {
     if path.len() < 2 {
         return;
@@ -89,15 +89,15 @@ mod tests {
         mesh.triangles.iter().map(signed).sum()
     }
 
-    /// Area of a regular polygon with [`SIDES`] corners on a circle of radius one.
-    fn section() -> f64 {
+    /// Area of a regular polygon with [`SIDES`] corners on the unit circle.
+    fn section_area() -> f64 {
         0.5 * SIDES as f64 * libm::sin(core::f64::consts::TAU / SIDES as f64)
     }
 
     #[test]
-    fn straight_tube_is_a_prism_and_faces_outward() {
+    fn straight_tube_is_an_outward_facing_prism() {
         let tube = polyline(&[DVec3::X, DVec3::X + 2.0 * DVec3::Z, DVec3::X + 3.0 * DVec3::Z], 0.1);
-        let exact = 3.0 * 0.01 * section();
+        let exact = 3.0 * 0.01 * section_area();
         assert!((volume(&tube) - exact).abs() < 1e-14);
     }
 
@@ -105,12 +105,12 @@ mod tests {
     fn arrow_is_a_prism_and_a_pyramid() {
         let arrow = arrows(&[(DVec3::ZERO, 10.0 * DVec3::Y)], 0.1);
         let head = HEAD_LENGTH * 0.1;
-        let exact = section() * 0.01 * ((10.0 - head) + HEAD_RADIUS * HEAD_RADIUS * head / 3.0);
+        let exact = section_area() * 0.01 * ((10.0 - head) + HEAD_RADIUS * HEAD_RADIUS * head / 3.0);
         assert!((volume(&arrow) - exact).abs() < 1e-13);
     }
 
     #[test]
-    fn nothing_comes_of_nothing() {
+    fn lines_and_arrows_of_zero_length_are_empty() {
         assert!(polyline(&[DVec3::ONE, DVec3::ONE], 0.1).triangles.is_empty());
         assert!(arrows(&[(DVec3::ONE, DVec3::ONE)], 0.1).triangles.is_empty());
     }
