@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::{DVec2, DVec3};
-use isochore_curve::{RationalProfile, sweep as sweep_grid};
+use isochore_curve::{RationalCrossSection, sweep as sweep_grid};
 use isochore_mesh::{GridMesh, TriMesh, io};
 
 use crate::{
@@ -137,13 +137,13 @@ impl Profile {
     }
 
     /// The rational curves that make up the profile.
-    fn curves(&self) -> Vec<RationalProfile> {
+    fn curves(&self) -> Vec<RationalCrossSection> {
         if self.is_bezier {
-            return vec![RationalProfile { control_points: self.rows.clone() }];
+            return vec![RationalCrossSection { control_points: self.rows.clone() }];
         }
         let count = self.rows.len();
         let sides = if self.is_closed { count } else { count - 1 };
-        (0..sides).map(|i| RationalProfile { control_points: vec![self.rows[i], self.rows[(i + 1) % count]] }).collect()
+        (0..sides).map(|i| RationalCrossSection { control_points: vec![self.rows[i], self.rows[(i + 1) % count]] }).collect()
     }
 }
 

@@ -47,10 +47,10 @@
 //!
 //! ```
 //! use glam::DVec2;
-//! use isochore_curve::{PhSpline, RationalPatch, RationalProfile, RationalRotation, TrigonometricCurve};
+//! use isochore_curve::{PhSpline, RationalPatch, RationalCrossSection, RationalRotation, TrigonometricCurve};
 //!
 //! let spline = PhSpline::follow(&TrigonometricCurve::torus_knot(), 1e-3)?;
-//! let profile = RationalProfile::polynomial(&[DVec2::new(-0.1, 0.05), DVec2::new(0.1, 0.05)]);
+//! let profile = RationalCrossSection::polynomial(&[DVec2::new(-0.1, 0.05), DVec2::new(0.1, 0.05)]);
 //! let cubic = &spline.segments()[0];
 //! let patch = RationalPatch::sweep(cubic, &RationalRotation::symmetric(cubic), &profile, 0.0);
 //! assert!(patch.jet(0.5, 0.5).orthogonality().abs() < 1e-6);
@@ -106,8 +106,8 @@ pub use inversion::Inversion;
 pub use moebius::{MoebiusSegment, MoebiusSpline, Tilt};
 pub use ph_cubic::{HermiteError, PhCubic, PhCubicError, PhSpline, PhSplineError, RationalRotation};
 pub use profile_surface::{
-    PointGrid, ProfileJet, RationalPatch, RationalProfile, SurfaceJet, profile_surface_curvature, regularity,
-    safe_profile_radius, sweep, sweep_varying,
+    PointGrid, CrossSectionJet, RationalPatch, RationalCrossSection, SurfaceJet, profile_surface_curvature, regularity,
+    safe_cross_section_radius, sweep, sweep_varying,
 };
 pub use projection::project_along_chord;
 pub use reach::{Reach, reach};

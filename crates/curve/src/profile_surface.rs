@@ -12,7 +12,7 @@ use crate::{CurveJet, Frame};
 
 mod patch;
 
-pub use patch::{RationalPatch, RationalProfile, SurfaceJet};
+pub use patch::{RationalPatch, RationalCrossSection, SurfaceJet};
 
 /// Rows of points, one row a station and one column a profile point.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,13 +74,13 @@ pub fn regularity(spine: &CurveJet, frame: &Frame, profile: DVec2) -> f64 {
 }
 
 /// Radius within which every profile is safe on a spine: 1/κ_max over `jets`, infinite for straight spines.
-pub fn safe_profile_radius(jets: &[CurveJet]) -> f64 {
+pub fn safe_cross_section_radius(jets: &[CurveJet]) -> f64 {
     1.0 / jets.iter().map(CurveJet::curvature).fold(0.0, f64::max)
 }
 
 /// A point of a planar profile with its first two derivatives, coordinates along r and s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ProfileJet {
+pub struct CrossSectionJet {
     /// Position.
     pub position: DVec2,
     /// First derivative.
@@ -89,7 +89,7 @@ pub struct ProfileJet {
     pub second: DVec2,
 }
 
-impl ProfileJet {
+impl CrossSectionJet {
     /// Signed curvature κ_u, positive where the profile turns left (equation 11). Zero where the speed vanishes.
     pub fn curvature(&self) -> f64 {
         let speed = self.first.length();
@@ -104,7 +104,7 @@ impl ProfileJet {
 
 /// Gaussian curvature of the profile surface, K = −κ_u κ_v cos θ (equation 13 with the sign of the normal (10)). None
 /// where the surface is singular.
-pub fn profile_surface_curvature(spine: &CurveJet, frame: &Frame, profile: &ProfileJet) -> Option<f64> {
+pub fn profile_surface_curvature(spine: &CurveJet, frame: &Frame, profile: &CrossSectionJet) -> Option<f64> {
     let margin = regularity(spine, frame, profile.position);
     if margin == 0.0 {
         return None;

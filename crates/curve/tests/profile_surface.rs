@@ -4,8 +4,8 @@
 
 use glam::{DVec2, DVec3};
 use isochore_curve::{
-    Curve, Frame, PhCubic, ProfileJet, RationalPatch, RationalProfile, RationalRotation, TrigonometricCurve,
-    exact_frames, profile_surface_curvature, regularity, safe_profile_radius, sweep,
+    Curve, Frame, PhCubic, CrossSectionJet, RationalPatch, RationalCrossSection, RationalRotation, TrigonometricCurve,
+    exact_frames, profile_surface_curvature, regularity, safe_cross_section_radius, sweep,
 };
 
 fn example_a() -> PhCubic {
@@ -13,15 +13,15 @@ fn example_a() -> PhCubic {
         .unwrap()
 }
 
-fn profile() -> RationalProfile {
-    RationalProfile::polynomial(
+fn profile() -> RationalCrossSection {
+    RationalCrossSection::polynomial(
         &[(-0.08, 0.016), (-0.04, 0.096), (0.04, 0.08), (0.096, -0.024)].map(|(x, y)| DVec2::new(x, y)),
     )
 }
 
 /// A straight profile that does not pass through the spine, on which the check would be empty.
-fn line() -> RationalProfile {
-    RationalProfile::polynomial(&[DVec2::new(-0.1, 0.05), DVec2::new(0.1, 0.09)])
+fn line() -> RationalCrossSection {
+    RationalCrossSection::polynomial(&[DVec2::new(-0.1, 0.05), DVec2::new(0.1, 0.09)])
 }
 
 /// The grid over which the golden maxima were taken.
@@ -33,11 +33,11 @@ fn largest_orthogonality(patch: &RationalPatch) -> f64 {
     grid().map(|(u, v)| patch.jet(u, v).orthogonality().abs()).fold(0.0, f64::max)
 }
 
-fn rational(cubic: &PhCubic, profile: &RationalProfile) -> RationalPatch {
+fn rational(cubic: &PhCubic, profile: &RationalCrossSection) -> RationalPatch {
     RationalPatch::sweep(cubic, &RationalRotation::symmetric(cubic), profile, 0.0)
 }
 
-fn frenet(cubic: &PhCubic, profile: &RationalProfile) -> RationalPatch {
+fn frenet(cubic: &PhCubic, profile: &RationalCrossSection) -> RationalPatch {
     RationalPatch::sweep(cubic, &RationalRotation::FRENET, profile, 0.0)
 }
 
@@ -46,7 +46,7 @@ fn the_net_is_the_sweep_of_the_approximate_frame() {
     let cubic = example_a();
     let rotation = RationalRotation::symmetric(&cubic);
     let patch = rational(&cubic, &profile());
-    assert_eq!((patch.profile_degree, patch.spine_degree, patch.control_points.len()), (3, 9, 40));
+    assert_eq!((patch.cross_section_degree, patch.spine_degree, patch.control_points.len()), (3, 9, 40));
     for (u, v) in grid() {
         let frame = cubic.frenet_frame(v).turned(rotation.angle(v) - rotation.initial_angle);
         let mut c = profile().control_points;
@@ -124,7 +124,7 @@ fn profile_curvature_is_that_of_the_patch() {
             }
             c[0]
         };
-        let jet = ProfileJet { position: evaluate(points), first: evaluate(d), second: evaluate(dd) };
+        let jet = CrossSectionJet { position: evaluate(points), first: evaluate(d), second: evaluate(dd) };
         let frame = cubic.frenet_frame(v).turned(cubic.rotation_to(v));
         let formula = profile_surface_curvature(&cubic.jet(v), &frame, &jet).unwrap();
         let patch = patch.jet(u, v).gaussian_curvature().unwrap();
@@ -142,7 +142,7 @@ fn the_torus_has_its_curvature_and_its_singular_bound() {
     let frame = Frame::new(jet.normal().unwrap(), jet.tangent());
     for angle in [0.0, 1.0, 2.5, std::f64::consts::PI] {
         let (sin, cos) = libm::sincos(angle);
-        let profile = ProfileJet {
+        let profile = CrossSectionJet {
             position: DVec2::new(minor * cos, minor * sin),
             first: DVec2::new(-minor * sin, minor * cos),
             second: DVec2::new(-minor * cos, -minor * sin),
@@ -153,8 +153,8 @@ fn the_torus_has_its_curvature_and_its_singular_bound() {
         assert!((found - exact).abs() < 1e-14, "{found} against {exact}");
         assert!((regularity(&jet, &frame, profile.position) - (1.0 - minor * cos / major)).abs() < 1e-15);
     }
-    assert!((safe_profile_radius(&[jet]) - major).abs() < 1e-14);
-    let at_center = ProfileJet { position: DVec2::new(2.0, 0.0), first: DVec2::Y, second: DVec2::ZERO };
+    assert!((safe_cross_section_radius(&[jet]) - major).abs() < 1e-14);
+    let at_center = CrossSectionJet { position: DVec2::new(2.0, 0.0), first: DVec2::Y, second: DVec2::ZERO };
     let margin = regularity(&jet, &frame, at_center.position);
     assert!(margin.abs() < 1e-15, "the sweep stands still at the center of curvature");
 }

@@ -4,7 +4,7 @@
 use std::error::Error;
 
 use glam::{DVec2, DVec3};
-use isochore_curve::{Curve, PhCubic, RationalPatch, RationalProfile, RationalRotation};
+use isochore_curve::{Curve, PhCubic, RationalPatch, RationalCrossSection, RationalRotation};
 use isochore_examples::{joined, save_figure};
 use isochore_mesh::{GridMesh, TriMesh};
 use isochore_picture::{Body, Camera, Options, Panel};
@@ -19,11 +19,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         DVec3::new(1.0, 0.5, 0.0),
         DVec3::new(1.0, -0.3, 0.4),
     )?;
-    let curved = RationalProfile::polynomial(
+    let curved = RationalCrossSection::polynomial(
         &[(-0.08, 0.016), (-0.04, 0.096), (0.04, 0.08), (0.096, -0.024)].map(|(x, y)| DVec2::new(2.5 * x, 2.5 * y)),
     );
     // Beside the spine: through it, every frame would look orthogonal.
-    let line = RationalProfile::polynomial(&[DVec2::new(-0.25, 0.1), DVec2::new(0.25, 0.2)]);
+    let line = RationalCrossSection::polynomial(&[DVec2::new(-0.25, 0.1), DVec2::new(0.25, 0.2)]);
     let minimizing = RationalRotation::symmetric(&cubic);
     let mut sheets: Vec<(String, TriMesh)> = Vec::new();
     for (profile, is_line) in [(&curved, false), (&line, true)] {

@@ -1,6 +1,6 @@
 //! The swept surface as exact rational patches.
 
-use isochore_curve::{RationalPatch, RationalProfile, RationalRotation};
+use isochore_curve::{RationalPatch, RationalCrossSection, RationalRotation};
 use serde::Serialize;
 
 use crate::{
@@ -45,7 +45,7 @@ impl Net {
     pub(super) fn new(
         arguments: &SweepArguments,
         spine: &SpineFile,
-        profile: Vec<RationalProfile>,
+        profile: Vec<RationalCrossSection>,
         is_profile_closed: bool,
     ) -> Result<Self, CommandError> {
         refuse(arguments)?;
@@ -85,7 +85,7 @@ impl Net {
 
     fn degrees(&self) -> [usize; 2] {
         let first = &self.patches[0][0];
-        [first.profile_degree, first.spine_degree]
+        [first.cross_section_degree, first.spine_degree]
     }
 }
 

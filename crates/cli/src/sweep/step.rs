@@ -91,7 +91,7 @@ struct Sampled<'a> {
 impl Sampled<'_> {
     fn row(&self) -> &[DVec4] {
         let width = self.patch.spine_degree + 1;
-        let row = if self.u_end { self.patch.profile_degree } else { 0 };
+        let row = if self.u_end { self.patch.cross_section_degree } else { 0 };
         &self.patch.control_points[row * width..(row + 1) * width]
     }
 
@@ -120,7 +120,7 @@ fn curve(points: impl Iterator<Item = DVec4>) -> NurbsCurve<Vector4> {
 }
 
 fn surface(patch: &RationalPatch) -> NurbsSurface<Vector4> {
-    let knots = (KnotVec::bezier_knot(patch.profile_degree), KnotVec::bezier_knot(patch.spine_degree));
+    let knots = (KnotVec::bezier_knot(patch.cross_section_degree), KnotVec::bezier_knot(patch.spine_degree));
     let points = patch
         .control_points
         .chunks(patch.spine_degree + 1)

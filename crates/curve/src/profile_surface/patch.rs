@@ -9,12 +9,12 @@ use crate::{PhCubic, RationalRotation};
 
 /// A rational Bézier curve in the normal plane, over [0, 1].
 #[derive(Debug, Clone, PartialEq)]
-pub struct RationalProfile {
+pub struct RationalCrossSection {
     /// Homogeneous control points (w c₂, w c₃, w), one more than the degree.
     pub control_points: Vec<DVec3>,
 }
 
-impl RationalProfile {
+impl RationalCrossSection {
     /// The polynomial profile with the given control points, coordinates along r and s.
     pub fn polynomial(control_points: &[DVec2]) -> Self {
         Self { control_points: control_points.iter().map(|point| point.extend(1.0)).collect() }
@@ -35,7 +35,7 @@ pub struct RationalPatch {
     /// Homogeneous control points (w x, w y, w z, w); the index of v runs fastest.
     pub control_points: Vec<DVec4>,
     /// Degree in u, that of the profile.
-    pub profile_degree: usize,
+    pub cross_section_degree: usize,
     /// Degree in v.
     pub spine_degree: usize,
 }
@@ -87,7 +87,7 @@ impl RationalPatch {
     ///
     /// With [`RationalRotation::FRENET`] it is the sweep of the Frenet frame; a straight cubic has a constant frame in
     /// its place, [`PhCubic::frenet_frame`].
-    pub fn sweep(cubic: &PhCubic, rotation: &RationalRotation, profile: &RationalProfile, initial_angle: f64) -> Self {
+    pub fn sweep(cubic: &PhCubic, rotation: &RationalRotation, profile: &RationalCrossSection, initial_angle: f64) -> Self {
         let profile = profile.turned(initial_angle - rotation.initial_angle);
         let hodograph = cubic.sides().map(|side| 3.0 * side);
         let speed = cubic.speed_coefficients();
@@ -127,7 +127,7 @@ impl RationalPatch {
                     .map(move |k| (spine[k] * p.z + f2[k] * p.x + f3[k] * p.y).extend(weights[k] * p.z))
             })
             .collect();
-        Self { control_points, profile_degree: profile.control_points.len() - 1, spine_degree: Self::SPINE_DEGREE }
+        Self { control_points, cross_section_degree: profile.control_points.len() - 1, spine_degree: Self::SPINE_DEGREE }
     }
 
     /// Position and derivatives at (u, v).
