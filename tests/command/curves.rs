@@ -185,7 +185,7 @@ fn bad_curves_are_named_by_row() {
         ("0,0,0 1,0,0 2,0,0 3,0,0 4,0,0 5,0,0 6,0,0", &["--closed"], &["--closed", "6 apart", "open"]),
         ("0,0,0 1,0,0 1,1,0 0,0,0", &["--closed"], &["row 4", "leave it out"]),
         ("0,0,0 1,0,0", &["--tangents", "given"], &["no tangents", "tx,ty,tz"]),
-        ("0,0,0 1,0,0", &["--r0", "1,0,0"], &["--r0", "along the first tangent"]),
+        ("0,0,0 1,0,0", &["--r0", "1,0,0"], &["--r0", "parallel to the first tangent"]),
         ("0,0,0 1,0,0", &["--r0", "1,0"], &["--r0", "0,0,1"]),
         ("0,0,0 1,0,0", &["--twist", "minimal"], &["--twist minimal", "--closed"]),
         ("0,0,0 1,0,0", &["--twist", "often"], &["--twist", "whole number"]),

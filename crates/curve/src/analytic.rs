@@ -1,4 +1,4 @@
-//! Curves given by formulas: helix, knots, and any closure.
+//! Curves given by formulas: the helix, knots, and closures.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 use std::fmt;
@@ -9,7 +9,7 @@ use crate::{Curve, CurveJet};
 
 /// A trigonometric polynomial in three coordinates: a sum of `cosine` cos(f u) + `sine` sin(f u).
 ///
-/// Every knot here is one, since products of sines and cosines are sums of them.
+/// All knots of this module have this form, because products of sines and cosines are sums of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrigonometricCurve {
     terms: Vec<TrigonometricTerm>,
@@ -21,26 +21,26 @@ pub struct TrigonometricCurve {
 /// One frequency of a [`TrigonometricCurve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrigonometricTerm {
-    /// Radians per unit of the parameter.
+    /// Frequency f, radians per unit of the parameter.
     pub frequency: f64,
-    /// Factor of the cosine.
+    /// Coefficient of the cosine.
     pub cosine: DVec3,
-    /// Factor of the sine.
+    /// Coefficient of the sine.
     pub sine: DVec3,
 }
 
 impl TrigonometricCurve {
-    /// The curve Σ cosine cos(f u) + sine sin(f u) + `drift` u over `domain`.
+    /// Creates the curve Σ cosine cos(f u) + sine sin(f u) + `drift` u over `domain`.
     pub fn new(terms: Vec<TrigonometricTerm>, drift: DVec3, domain: (f64, f64), closed: bool) -> Self {
         Self { terms, drift, domain, closed }
     }
 
-    /// The frequencies.
+    /// The terms, one per frequency.
     pub fn terms(&self) -> &[TrigonometricTerm] {
         &self.terms
     }
 
-    /// The helix (radius cos u, radius sin u, rise u) over `domain`; `rise` is the height gained per radian.
+    /// The helix (radius cos u, radius sin u, rise u) over `domain`. `rise` is the height gained per radian.
     pub fn helix(radius: f64, rise: f64, domain: (f64, f64)) -> Self {
         Self::new(vec![term(1.0, [radius, 0.0, 0.0], [0.0, radius, 0.0])], DVec3::new(0.0, 0.0, rise), domain, false)
     }
@@ -63,7 +63,7 @@ impl TrigonometricCurve {
 
     /// The cinquefoil knot of Zheng's thesis, equation (7.9), over [0, 10π].
     ///
-    /// The printed denominator 2a² + 1 is a misprint for 2k + 1 with k = 2.
+    /// Correction: the printed denominator 2a² + 1 should be 2k + 1 with k = 2.
     pub fn cinquefoil() -> Self {
         // (cos t (2 − cos(2t/5)), sin t (2 − cos(2t/5)), −sin(2t/5))
         Self::new(
@@ -139,7 +139,23 @@ impl Curve for TrigonometricCurve {
     }
 }
 
-/// Any function from a parameter to a [`CurveJet`], as an open or closed curve.
+/// A curve given by a function from a parameter to a [`CurveJet`].
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::{Curve, CurveJet, FunctionCurve, length};
+///
+/// let parabola = |u: f64| CurveJet {
+///     position: DVec3::new(u, u * u, 0.0),
+///     first: DVec3::new(1.0, 2.0 * u, 0.0),
+///     second: DVec3::new(0.0, 2.0, 0.0),
+///     third: DVec3::ZERO,
+/// };
+/// let curve = FunctionCurve::new(parabola, (0.0, 1.0), false);
+/// assert_eq!(curve.jet(0.0).curvature(), 2.0);
+/// assert!((length(&curve) - 1.478_942_857_544_597_4).abs() < 1e-13);
+/// ```
 pub struct FunctionCurve<F> {
     function: F,
     domain: (f64, f64),
@@ -147,7 +163,7 @@ pub struct FunctionCurve<F> {
 }
 
 impl<F: Fn(f64) -> CurveJet + Send + Sync> FunctionCurve<F> {
-    /// The curve `function` over `domain`; its derivatives must be those of its positions.
+    /// Creates the curve `function` over `domain`. The derivatives that it returns must match its positions.
     pub fn new(function: F, domain: (f64, f64), closed: bool) -> Self {
         Self { function, domain, closed }
     }
@@ -182,13 +198,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn knots_are_the_printed_products() {
+    fn knots_match_the_printed_products() {
         for u in [0.0, 0.4, 1.9, 5.0] {
             let (s7, c7) = libm::sincos(7.0 * u);
             let (s2, c2) = libm::sincos(2.0 * u);
             let radius = 0.6 + 0.3 * c7;
             let knot = TrigonometricCurve::torus_knot().position(u);
-            // Four rounded terms of size one.
+            // Rounding of four terms of size one.
             assert!((knot - DVec3::new(radius * c2, radius * s2, 0.3 * s7)).length() < 1e-15);
 
             let (s, c) = libm::sincos(u);
@@ -207,7 +223,8 @@ mod tests {
         let step = 1e-5;
         for curve in [TrigonometricCurve::torus_knot(), TrigonometricCurve::helix(2.0, 0.3, (0.0, 6.0))] {
             let (before, at, after) = (curve.jet(1.0 - step), curve.jet(1.0), curve.jet(1.0 + step));
-            // Central differences: step² f‴/6 with f‴ below 9³ · 9 for the highest frequency, and rounding 1e-16/step.
+            // Error of central differences: step² f‴/6, with f‴ below 9³ · 9 for the highest frequency, and rounding
+            // 1e-16/step.
             let bound = step * step * 6561.0 / 6.0;
             assert!(((after.position - before.position) / (2.0 * step) - at.first).length() < bound);
             assert!(((after.first - before.first) / (2.0 * step) - at.second).length() < bound);

@@ -1,15 +1,27 @@
-//! Integrals along a curve: length, total curvature, total torsion, and the parameter at a length.
+//! Integrals along a curve (length, total curvature, total torsion) and parametrization by arc length.
 
 use crate::Curve;
 use crate::quadrature::integrate;
 
-/// Newton steps of [`ArcLength::parameter_at`] at most; bisection alone would need 53, so more never help.
+/// Largest number of Newton steps of [`ArcLength::parameter_at`]. More have no effect, because bisection alone
+/// needs 53. Fewer: cusps lose digits.
 const STEPS: usize = 60;
 
-/// Equal parts of each smooth piece in the table of an [`ArcLength`]. More: a longer table. Fewer: more Newton steps.
+/// Equal parts of each smooth piece in the table of an [`ArcLength`]. Larger: a longer table. Smaller: more
+/// Newton steps.
 const PARTS: usize = 16;
 
-/// Table of lengths along a curve, by which parameters are found at lengths.
+/// Table of arc lengths along a curve, for conversion between parameter and length.
+///
+/// # Examples
+/// ```
+/// use isochore_curve::{ArcLength, TrigonometricCurve};
+///
+/// let table = ArcLength::new(TrigonometricCurve::helix(3.0, 4.0, (0.0, 2.0)));
+/// assert!((table.total() - 10.0).abs() < 1e-13, "the speed is 5");
+/// assert!((table.parameter_at(5.0) - 1.0).abs() < 1e-14);
+/// assert!((table.length_to(1.5) - 7.5).abs() < 1e-13);
+/// ```
 #[derive(Debug, Clone)]
 pub struct ArcLength<C> {
     curve: C,
@@ -18,7 +30,7 @@ pub struct ArcLength<C> {
 }
 
 impl<C: Curve> ArcLength<C> {
-    /// Measures `curve`.
+    /// Builds the table for `curve`.
     pub fn new(curve: C) -> Self {
         let breaks = curve.breaks();
         let mut parameters = vec![breaks[0]];
@@ -45,12 +57,13 @@ impl<C: Curve> ArcLength<C> {
         self.lengths[self.lengths.len() - 1]
     }
 
-    /// The parameters of the table, ascending from the start of the domain to its end, each with the length up to there.
+    /// Entries of the table: ascending parameters over the whole domain, each with the length of the curve up to
+    /// that parameter.
     pub fn table(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.parameters.iter().copied().zip(self.lengths.iter().copied())
     }
 
-    /// Length from the start of the domain to `parameter`, which is clamped into the domain.
+    /// Length from the start of the domain to `parameter`, which is clamped to the domain.
     pub fn length_to(&self, parameter: f64) -> f64 {
         let last = self.parameters.len() - 1;
         let parameter = parameter.clamp(self.parameters[0], self.parameters[last]);
@@ -59,7 +72,7 @@ impl<C: Curve> ArcLength<C> {
         self.lengths[part] + rest
     }
 
-    /// Parameter at which the curve has the given length from its start; lengths are clamped to the curve.
+    /// Parameter at the given `length` from the start. The length is clamped to [0, [`total`](Self::total)].
     pub fn parameter_at(&self, length: f64) -> f64 {
         let length = length.clamp(0.0, self.total());
         let last = self.parameters.len() - 1;
@@ -84,7 +97,7 @@ impl<C: Curve> ArcLength<C> {
             if step.abs() <= 2.0 * f64::EPSILON * (parameter.abs() + width) {
                 return parameter;
             }
-            // Bisection where the step leaves the bracket, as near a cusp, where the speed vanishes.
+            // Bisect if the step leaves the bracket, as it does near a cusp, where the speed is zero.
             parameter = if next > low && next < high { next } else { 0.5 * (low + high) };
         }
         parameter
@@ -113,10 +126,10 @@ pub fn total_squared_curvature(curve: &impl Curve) -> f64 {
     })
 }
 
-/// ∫ τ ds over `curve`, radians. Meaningful only where the curvature never vanishes.
+/// ∫ τ ds over `curve`, radians. Meaningful only if the curvature is positive everywhere.
 ///
-/// Where it nearly vanishes the torsion has a peak narrower than quadrature resolves, and part of it is missed; the closing
-/// angle of rotation-minimizing frames has no such trouble.
+/// If the curvature is nearly zero at a point, the torsion has a peak that the quadrature cannot resolve, and the
+/// result is inaccurate. The closing angle of rotation-minimizing frames does not have this problem.
 pub fn total_torsion(curve: &impl Curve) -> f64 {
     along(curve, |u| {
         let jet = curve.jet(u);
@@ -124,7 +137,7 @@ pub fn total_torsion(curve: &impl Curve) -> f64 {
     })
 }
 
-/// Integral by the parameter over the whole domain, piece by piece.
+/// Integral over the whole domain with respect to the parameter, piece by piece.
 fn along(curve: &impl Curve, mut function: impl FnMut(f64) -> f64) -> f64 {
     let mut sum = 0.0;
     for pair in curve.breaks().windows(2) {
@@ -142,7 +155,7 @@ mod tests {
     use super::*;
     use crate::{Bezier, TrigonometricCurve};
 
-    /// Golden integrals from 40-digit arithmetic; the bounds allow rounding of sums of about 20 parts.
+    /// Reference values from 40-digit arithmetic. The bounds allow rounding in sums of about 20 parts.
     #[test]
     fn knots_have_the_known_integrals() {
         let torus = TrigonometricCurve::torus_knot();
@@ -157,7 +170,7 @@ mod tests {
         assert!((total_torsion(&cinquefoil) + 1.407_701_989_360_733_4).abs() < 1e-12);
     }
 
-    /// Zheng 3.4: the exact torsion integral tends to −π while the torsion itself has a peak as narrow as the height.
+    /// Zheng 3.4: the torsion integral tends to −π, and the torsion has a peak as narrow as the height.
     #[test]
     fn s_curve_torsion_is_resolved_down_to_narrow_peaks() {
         for (height, exact) in [(1.0, -2.640_027_770_017_6), (0.1, -3.099_128_313_107_5), (0.01, -3.137_366_329_922)] {
@@ -170,16 +183,16 @@ mod tests {
         let curve = TrigonometricCurve::torus_knot();
         let table = ArcLength::new(&curve);
         for i in 0..=20 {
-            let wanted = table.total() * f64::from(i) / 20.0;
-            let found = table.length_to(table.parameter_at(wanted));
-            assert!((found - wanted).abs() < 1e-13 * table.total(), "{found} against {wanted}");
+            let expected = table.total() * f64::from(i) / 20.0;
+            let found = table.length_to(table.parameter_at(expected));
+            assert!((found - expected).abs() < 1e-13 * table.total(), "{found}, expected {expected}");
         }
         assert_eq!(table.parameter_at(-1.0), 0.0);
         assert!((table.parameter_at(1e9) - std::f64::consts::TAU).abs() < 1e-14);
     }
 
     #[test]
-    fn a_point_has_no_length_and_does_not_hang() {
+    fn a_constant_curve_has_length_zero() {
         let point = Bezier::new(vec![glam::DVec3::ONE; 4]);
         let table = ArcLength::new(&point);
         assert_eq!(table.total(), 0.0);

@@ -1,8 +1,8 @@
-//! Double reflection for sixteen curves at once, in single precision.
+//! Double reflection for a batch of sixteen curves, in single precision.
 //!
-//! One curve is a chain of dependent steps, so a processor waits most of the time; sixteen curves fill its vectors.
-//! Chords are taken in double precision before they are rounded, since their cancellation is what costs single
-//! precision its digits on dense samples.
+//! The steps along one curve depend on each other, so a processor waits most of the time. Sixteen curves fill
+//! its vector registers. Chords are computed in double precision before rounding, because on dense samples
+//! their cancellation would lose most digits of single precision.
 
 use glam::DVec3;
 use multiversion::multiversion;
@@ -11,13 +11,13 @@ use crate::double_reflection::SMALLEST_SECOND_REFLECTION;
 use crate::frame::{FrameError, orthogonal_reference};
 use crate::{Frame, Spine};
 
-/// Curves carried at once.
+/// Number of curves in a full batch.
 pub const BATCH_SIZE: usize = 16;
 
-/// One number for each curve.
+/// One number per curve.
 type Lanes = [f32; BATCH_SIZE];
 
-/// A vector for each curve.
+/// One vector per curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 struct VectorLanes {
@@ -39,47 +39,60 @@ impl VectorLanes {
     }
 }
 
-/// Up to sixteen spines with equally many segments, laid out so that they are carried abreast.
+/// Up to sixteen spines with equal numbers of segments, stored as a structure of arrays.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::{Spine, SpineBatch, TrigonometricCurve};
+///
+/// let helix = |radius| Spine::sample(&TrigonometricCurve::helix(radius, 0.4, (0.0, 6.0)), 100);
+/// let batch = SpineBatch::new(&[helix(1.0)?, helix(2.0)?])?;
+/// let mut references = batch.references();
+/// batch.propagate(&[DVec3::Z; 2], &mut references)?;
+/// assert_eq!(batch.frames(1, &references)?.len(), 101);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct SpineBatch {
     count: usize,
-    /// Chords by segment, each scaled to unit length.
+    /// Unit vectors along the chords, by segment.
     chords: Vec<VectorLanes>,
     /// Tangents by station.
     tangents: Vec<VectorLanes>,
-    /// Tangents in full precision by station, for the frames.
+    /// The spines in double precision, for the frames.
     spines: Vec<Spine>,
 }
 
-/// Reference vectors of spines carried abreast.
+/// Reference vectors of a [`SpineBatch`].
 #[derive(Debug, Clone)]
 pub struct ReferenceBatch {
     vectors: Vec<VectorLanes>,
-    /// For each curve the smallest squared second reflection.
+    /// Smallest squared length of the second reflection vector of each curve.
     smallest: Lanes,
 }
 
-/// Why spines cannot be carried abreast.
+/// Errors when constructing a [`SpineBatch`]. Indices count from zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum BatchError {
-    /// There are none, or more than sixteen.
-    #[error("{count} spines, where 1 to 16 are carried abreast")]
+    /// The batch is empty or has more than sixteen spines.
+    #[error("a batch has 1 to 16 spines, got {count}")]
     Count {
-        /// Spines given.
+        /// Number of spines.
         count: usize,
     },
-    /// A spine has another number of segments than the first.
-    #[error("spine {index} has {segments} segments and the first has {expected}")]
+    /// The number of segments differs from that of the first spine.
+    #[error("spine {index} has {segments} segments, but the first has {expected}; all must be equal")]
     Segments {
         /// The spine.
         index: usize,
-        /// Its segments.
+        /// Number of its segments.
         segments: usize,
-        /// Those of the first.
+        /// Number of segments of the first spine.
         expected: usize,
     },
-    /// Two equal neighboring points, which have no chord.
-    #[error("segment {segment} of spine {index} has no length")]
+    /// Two neighboring points are equal, so that they have no chord.
+    #[error("segment {segment} of spine {index} has length zero; remove one of its points")]
     RepeatedPoint {
         /// The spine.
         index: usize,
@@ -89,10 +102,12 @@ pub enum BatchError {
 }
 
 impl SpineBatch {
-    /// Lays out `spines`.
+    /// Creates a batch of `spines`.
     ///
     /// # Errors
-    /// A wrong number of spines, unequal numbers of segments, and repeated points.
+    /// - [`BatchError::Count`] unless there are 1 to 16 spines.
+    /// - [`BatchError::Segments`] if the numbers of segments differ.
+    /// - [`BatchError::RepeatedPoint`] if two neighboring points are equal.
     pub fn new(spines: &[Spine]) -> Result<Self, BatchError> {
         if spines.is_empty() || spines.len() > BATCH_SIZE {
             return Err(BatchError::Count { count: spines.len() });
@@ -106,7 +121,7 @@ impl SpineBatch {
                 return Err(BatchError::RepeatedPoint { index, segment });
             }
         }
-        // Lanes without a curve repeat the last one.
+        // Unused lanes repeat the last curve.
         let spine = |lane: usize| &spines[lane.min(spines.len() - 1)];
         let chord = |i: usize, lane: usize| (spine(lane).point(i + 1) - spine(lane).point(i)).normalize_or_zero();
         Ok(Self {
@@ -117,42 +132,42 @@ impl SpineBatch {
         })
     }
 
-    /// Room for the results of [`carry`](Self::carry).
+    /// Allocates the output of [`propagate`](Self::propagate).
     pub fn references(&self) -> ReferenceBatch {
         ReferenceBatch { vectors: vec![VectorLanes::ZERO; self.tangents.len()], smallest: [4.0; BATCH_SIZE] }
     }
 
-    /// Carries the part of each of `starts` normal to the first tangent of its curve along all curves, into
-    /// `references`.
+    /// Computes the rotation-minimizing reference vectors of all curves into `references`. The first vector of
+    /// each curve is the component of its start vector normal to the first tangent.
     ///
     /// # Errors
-    /// [`FrameError::Reference`] where a start is along its first tangent.
+    /// [`FrameError::Reference`] if a start vector is zero, not finite, or parallel to the first tangent.
     ///
     /// # Panics
-    /// If there is not one start a curve, or if `references` was made for other spines.
+    /// If there is not one start vector per curve, or if `references` has another number of stations.
     pub fn propagate(&self, starts: &[DVec3], references: &mut ReferenceBatch) -> Result<(), FrameError> {
-        assert_eq!(starts.len(), self.count, "one start a curve");
-        assert_eq!(references.vectors.len(), self.tangents.len(), "references of these spines");
+        assert_eq!(starts.len(), self.count, "one start vector per curve");
+        assert_eq!(references.vectors.len(), self.tangents.len(), "the references must belong to this batch");
         let starts = starts
             .iter()
             .zip(&self.spines)
             .map(|(&start, spine)| orthogonal_reference(start, spine.tangent(0)))
             .collect::<Result<Vec<_>, _>>()?;
         references.vectors[0] = VectorLanes::gather(|lane| starts[lane.min(self.count - 1)]);
-        references.smallest = carry_lanes(&self.chords, &self.tangents, &mut references.vectors);
+        references.smallest = propagate_lanes(&self.chords, &self.tangents, &mut references.vectors);
         Ok(())
     }
 
-    /// The frames of one curve, made orthonormal in double precision.
+    /// Returns the frames of one curve, orthonormalized in double precision.
     ///
     /// # Errors
-    /// [`FrameError::DegenerateSegment`] where a segment of the curve determines no rotation; the frames of the other
-    /// curves are good.
+    /// [`FrameError::DegenerateSegment`] if a segment of the curve does not determine a rotation. The frames of
+    /// the other curves are still valid.
     ///
     /// # Panics
-    /// If there is no such curve.
+    /// If `curve` is out of range.
     pub fn frames(&self, curve: usize, references: &ReferenceBatch) -> Result<Vec<Frame>, FrameError> {
-        assert!(curve < self.count, "curve {curve} of {}", self.count);
+        assert!(curve < self.count, "curve {curve} is out of range: the batch has {}", self.count);
         let spine = &self.spines[curve];
         if references.smallest[curve] < SMALLEST_SECOND_REFLECTION as f32 {
             let segment =
@@ -176,10 +191,13 @@ impl SpineBatch {
     }
 }
 
-/// The kernel: double reflection for all lanes, segment by segment. Compiled for several instruction sets, none of
-/// which fuses multiplications and additions, so that all give the same bits.
+/// Double reflection for all lanes, segment by segment. Returns the smallest squared length of the second
+/// reflection vector of each lane.
+///
+/// It is compiled for several instruction sets. None of the versions fuses multiplications and additions, so
+/// all give the same bits.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
-fn carry_lanes(chords: &[VectorLanes], tangents: &[VectorLanes], references: &mut [VectorLanes]) -> Lanes {
+fn propagate_lanes(chords: &[VectorLanes], tangents: &[VectorLanes], references: &mut [VectorLanes]) -> Lanes {
     let mut smallest = [4.0; BATCH_SIZE];
     let mut r = references[0];
     let mut start = &tangents[0];
@@ -188,11 +206,13 @@ fn carry_lanes(chords: &[VectorLanes], tangents: &[VectorLanes], references: &mu
         for lane in 0..BATCH_SIZE {
             let (cx, cy, cz) = (chord.x[lane], chord.y[lane], chord.z[lane]);
             let (sx, sy, sz) = (start.x[lane], start.y[lane], start.z[lane]);
+            // Reflect the tangent along the unit chord; v is the vector of the second reflection.
             let along = 2.0 * (cx * sx + cy * sy + cz * sz);
             let (vx, vy, vz) =
                 (end.x[lane] - (sx - along * cx), end.y[lane] - (sy - along * cy), end.z[lane] - (sz - along * cz));
             let second = vx * vx + vy * vy + vz * vz;
             smallest[lane] = if second < smallest[lane] { second } else { smallest[lane] };
+            // Apply both reflections to the reference vector.
             let (rx, ry, rz) = (r.x[lane], r.y[lane], r.z[lane]);
             let first = 2.0 * (cx * rx + cy * ry + cz * rz);
             let (rx, ry, rz) = (rx - first * cx, ry - first * cy, rz - first * cz);
@@ -222,13 +242,13 @@ mod tests {
     }
 
     #[test]
-    fn every_curve_has_the_frames_of_double_precision() {
+    fn frames_match_double_precision() {
         for count in [1, 5, 16] {
             let spines = spines(count, 1000);
             let starts = vec![DVec3::Z; count];
-            let abreast = SpineBatch::new(&spines).unwrap();
-            let mut references = abreast.references();
-            abreast.propagate(&starts, &mut references).unwrap();
+            let batch = SpineBatch::new(&spines).unwrap();
+            let mut references = batch.references();
+            batch.propagate(&starts, &mut references).unwrap();
             for (curve, spine) in spines.iter().enumerate() {
                 let exact = rotation_minimizing_frames(
                     spine,
@@ -237,9 +257,9 @@ mod tests {
                     DegenerateSegment::Refuse,
                 )
                 .unwrap();
-                let frames = abreast.frames(curve, &references).unwrap();
+                let frames = batch.frames(curve, &references).unwrap();
                 let worst = frames.iter().zip(&exact.stations).map(|(a, b)| a.r.distance(b.r)).fold(0.0, f64::max);
-                // A thousand steps of single rounding at random: √1000 · 6e-8 = 2e-6, and a margin of four.
+                // A thousand steps with random rounding in single precision: √1000 · 6e-8 = 2e-6, and a margin of four.
                 assert!(worst < 8e-6, "curve {curve}: {worst:e}");
                 // Orthonormal in double precision.
                 assert!(frames.iter().all(|f| f.r.dot(f.t).abs() < 1e-15 && (f.r.length() - 1.0).abs() < 1e-15));
@@ -248,25 +268,25 @@ mod tests {
     }
 
     #[test]
-    fn one_bad_curve_leaves_the_others() {
+    fn a_degenerate_curve_does_not_affect_the_others() {
         let mut spines = spines(3, 20);
         let mut tangents = spines[1].tangents().to_vec();
         tangents[7] = -tangents[7];
         spines[1] = Spine::new(spines[1].points().to_vec(), tangents, false).unwrap();
-        let abreast = SpineBatch::new(&spines).unwrap();
-        let mut references = abreast.references();
-        abreast.propagate(&[DVec3::Z; 3], &mut references).unwrap();
-        assert!(abreast.frames(0, &references).is_ok() && abreast.frames(2, &references).is_ok());
-        assert_eq!(abreast.frames(1, &references), Err(FrameError::DegenerateSegment { segment: 6 }));
+        let batch = SpineBatch::new(&spines).unwrap();
+        let mut references = batch.references();
+        batch.propagate(&[DVec3::Z; 3], &mut references).unwrap();
+        assert!(batch.frames(0, &references).is_ok() && batch.frames(2, &references).is_ok());
+        assert_eq!(batch.frames(1, &references), Err(FrameError::DegenerateSegment { segment: 6 }));
     }
 
     #[test]
-    fn unequal_spines_are_refused() {
+    fn rejects_unequal_spines() {
         assert_eq!(SpineBatch::new(&[]).unwrap_err(), BatchError::Count { count: 0 });
         assert_eq!(SpineBatch::new(&spines(17, 3)).unwrap_err(), BatchError::Count { count: 17 });
         let unequal = [spines(1, 3), spines(1, 4)].concat();
         assert_eq!(SpineBatch::new(&unequal).unwrap_err(), BatchError::Segments { index: 1, segments: 4, expected: 3 });
-        let still = Spine::new(vec![DVec3::X; 2], vec![DVec3::X; 2], false).unwrap();
-        assert_eq!(SpineBatch::new(&[still]).unwrap_err(), BatchError::RepeatedPoint { index: 0, segment: 0 });
+        let constant = Spine::new(vec![DVec3::X; 2], vec![DVec3::X; 2], false).unwrap();
+        assert_eq!(SpineBatch::new(&[constant]).unwrap_err(), BatchError::RepeatedPoint { index: 0, segment: 0 });
     }
 }

@@ -1,9 +1,9 @@
-//! Products of polynomials in Bernstein form on [0, 1].
+//! Arithmetic of polynomials in Bernstein form on [0, 1].
 
 use std::ops::{Add, Mul};
 
-/// Bernstein coefficients of the product of two polynomials, whose coefficients multiply by `multiply`: scalars,
-/// scalars with vectors, dot and cross products alike.
+/// Bernstein coefficients of the product of two polynomials. `multiply` multiplies their coefficients, which
+/// can be scalars or vectors.
 pub(crate) fn product<A: Copy, B: Copy, C>(f: &[A], g: &[B], multiply: impl Fn(A, B) -> C) -> Vec<C>
 where
     C: Copy + Default + Add<Output = C> + Mul<f64, Output = C>,
@@ -12,14 +12,14 @@ where
     let mut result = vec![C::default(); m + n + 1];
     for (i, &a) in f.iter().enumerate() {
         for (j, &b) in g.iter().enumerate() {
-            let share = binomial(m, i) * binomial(n, j) / binomial(m + n, i + j);
-            result[i + j] = result[i + j] + multiply(a, b) * share;
+            let weight = binomial(m, i) * binomial(n, j) / binomial(m + n, i + j);
+            result[i + j] = result[i + j] + multiply(a, b) * weight;
         }
     }
     result
 }
 
-/// The same polynomial with `degrees` more.
+/// Raises the degree by `degrees`; the polynomial stays the same.
 pub(crate) fn raise<C>(f: &[C], degrees: usize) -> Vec<C>
 where
     C: Copy + Default + Add<Output = C> + Mul<f64, Output = C>,
@@ -27,7 +27,7 @@ where
     product(&vec![1.0; degrees + 1], f, |one: f64, c| c * one)
 }
 
-/// Value of a polynomial by de Casteljau's triangle.
+/// Value of a polynomial, by de Casteljau's algorithm.
 pub(crate) fn value<C>(coefficients: &[C], parameter: f64) -> C
 where
     C: Copy + Default + Add<Output = C> + Mul<f64, Output = C>,
@@ -41,7 +41,7 @@ where
     points[0]
 }
 
-/// Bernstein coefficients of the derivative; the zero polynomial for a constant.
+/// Bernstein coefficients of the derivative. The derivative of a constant is the zero polynomial.
 pub(crate) fn derivative<C>(coefficients: &[C]) -> Vec<C>
 where
     C: Copy + Default + Add<Output = C> + Mul<f64, Output = C>,
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn products_and_derivatives_have_the_right_values() {
+    fn products_and_derivatives_have_the_correct_values() {
         let (f, g) = ([1.0, -2.0, 0.5], [3.0, 0.25, -1.0, 2.0]);
         let fg = product(&f, &g, |a, b| a * b);
         assert_eq!(fg.len(), 6);

@@ -1,27 +1,41 @@
-//! Bézier curves of any degree.
+//! Bézier curves of arbitrary degree.
 
 use glam::DVec3;
 
 use crate::{Curve, CurveJet};
 
 /// A polynomial curve over [0, 1] in Bernstein form.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::{Bezier, Curve};
+///
+/// let parabola = Bezier::new(vec![DVec3::ZERO, DVec3::new(1.0, 2.0, 0.0), DVec3::new(2.0, 0.0, 0.0)]);
+/// assert_eq!(parabola.degree(), 2);
+/// assert_eq!(parabola.position(0.5), DVec3::new(1.0, 1.0, 0.0));
+/// let (left, right) = parabola.split(0.5);
+/// assert_eq!(left.position(1.0), right.position(0.0));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bezier {
     control_points: Vec<DVec3>,
 }
 
 impl Bezier {
-    /// The curve with the given control points, one more than its degree.
+    /// Creates a curve from its control points. Their number is one more than the degree.
     ///
     /// # Panics
-    /// If there are no control points.
+    /// If `control_points` is empty.
     pub fn new(control_points: Vec<DVec3>) -> Self {
-        assert!(!control_points.is_empty(), "a Bézier curve has at least one control point");
+        assert!(!control_points.is_empty(), "a Bézier curve needs at least one control point");
         Self { control_points }
     }
 
-    /// The S-shaped curve of degree five that Zheng's thesis, section 3.4, uses to show that torsion is unstable: as
-    /// `height` tends to zero it becomes planar while its torsion at the middle grows without bound.
+    /// S-shaped curve of degree five that shows the instability of torsion. As `height` tends to zero, the
+    /// curve becomes planar and its torsion at parameter ½ grows without bound.
+    ///
+    /// Source: Zheng's thesis, section 3.4.
     pub fn s_curve(height: f64) -> Self {
         Self::new(vec![
             DVec3::new(1.0, 1.0, 0.0),
@@ -43,7 +57,7 @@ impl Bezier {
         self.control_points.len() - 1
     }
 
-    /// The two parts left and right of `parameter`, each over [0, 1].
+    /// Splits the curve at `parameter` into two curves over [0, 1] each.
     pub fn split(&self, parameter: f64) -> (Self, Self) {
         let mut points = self.control_points.clone();
         let mut left = vec![points[0]];
@@ -67,7 +81,7 @@ impl Curve for Bezier {
         let mut points = self.control_points.clone();
         let degree = self.degree();
         let mut jet = CurveJet { position: DVec3::ZERO, first: DVec3::ZERO, second: DVec3::ZERO, third: DVec3::ZERO };
-        // De Casteljau's triangle; differences of its last rows are the derivatives.
+        // De Casteljau's algorithm. Differences within its last rows are the derivatives.
         for row in 0..=degree {
             let (n, left) = (degree as f64, degree - row);
             match left {
@@ -93,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn s_curve_has_the_published_middle() {
+    fn s_curve_has_the_published_values_at_its_midpoint() {
         // Zheng 3.4 with the sign of κ₂ corrected: κ₀ = 4h/5, τ₀ = −12/(5h) at t = 1/2.
         for height in [1.0, 0.1, 1e-4] {
             let jet = Bezier::s_curve(height).jet(0.5);
@@ -113,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_join_and_lie_on_the_whole() {
+    fn parts_of_a_split_match_the_curve() {
         let whole = Bezier::s_curve(0.7);
         let (left, right) = whole.split(0.4);
         assert!((left.position(0.5) - whole.position(0.2)).length() < 1e-15);

@@ -1,29 +1,32 @@
-//! Closest points of a curve: the nearest one, and every local minimum of the distance.
+//! Closest points on a curve: the nearest point, and all local minima of the distance.
 
 use glam::DVec3;
 
 use crate::Curve;
 use crate::quadrature::gauss;
 
-/// Turning of the tangent inside one piece of a [`ClosestPoint`], radians, at most. Larger: fewer pieces, but more of
-/// them fail the monotonicity test and are split again at every query. Smaller: more spheres to test.
+/// Largest turning of the tangent within one piece of a [`ClosestPoint`], radians. Larger: more pieces fail
+/// the monotonicity test and are split again at every query. Smaller: more spheres to test.
 const PIECE_TURNING: f64 = 0.3;
 
-/// Halvings of a smooth piece at most while its turning is too large; reached only around cusps.
+/// Largest number of halvings of a smooth piece whose turning is too large. Reached only near cusps. Larger:
+/// more pieces at cusps. Smaller: loose bounds at cusps.
 const PIECE_DEPTH: u32 = 12;
 
-/// Halvings of a piece during a query where the derivative of the distance is not monotonic. A smaller number misses
-/// minima that are close together beyond the center of curvature; each more doubles the cost of such queries.
+/// Largest number of halvings of a piece during a query, if the derivative of the distance is not monotonic.
+/// Larger: each step doubles the cost of such queries. Smaller: minima that are close together beyond the
+/// center of curvature are missed.
 const QUERY_DEPTH: u32 = 6;
 
-/// Bracketed Newton steps at most: enough for bisection alone to reach rounding.
+/// Largest number of bracketed Newton steps. Larger: no effect, because bisection alone reaches rounding error.
+/// Smaller: digits are lost near cusps.
 const STEPS: usize = 60;
 
-/// A Newton step this small, as a share of the piece, is the last: what is missing after it is its square. Larger:
-/// digits are lost. Smaller: one more step that changes nothing.
+/// Relative size of the last Newton step, as a fraction of the piece. The error after it is its square. Larger:
+/// digits are lost. Smaller: one more step without effect.
 const LAST_STEP: f64 = 1e-8;
 
-/// A point of a curve at which the distance to the query is a local minimum.
+/// A point on a curve at which the distance to the query is a local minimum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveProjection {
     /// Parameter on the curve.
@@ -34,12 +37,24 @@ pub struct CurveProjection {
     pub distance: f64,
 }
 
-/// A curve cut into pieces with bounding spheres, ready for many closest-point queries.
+/// Closest-point queries on a curve, accelerated by bounding spheres of its pieces.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::{ClosestPoint, TrigonometricCurve};
+///
+/// let circle = TrigonometricCurve::helix(1.0, 0.0, (0.0, std::f64::consts::TAU));
+/// let search = ClosestPoint::new(circle);
+/// let nearest = search.closest(DVec3::new(0.0, 3.0, 0.0));
+/// assert!(nearest.position.distance(DVec3::Y) < 1e-15);
+/// assert!((nearest.distance - 2.0).abs() < 1e-15);
+/// ```
 #[derive(Debug, Clone)]
 pub struct ClosestPoint<C> {
     curve: C,
     pieces: Vec<Piece>,
-    /// Center and radius of each piece, together in memory, since every query runs through all of them.
+    /// Center and radius of each piece, contiguous in memory because every query reads all of them.
     spheres: Vec<(DVec3, f64)>,
 }
 
@@ -47,48 +62,50 @@ pub struct ClosestPoint<C> {
 struct Piece {
     start: f64,
     end: f64,
-    /// Position at the middle parameter.
+    /// Position at the midpoint of the parameter interval.
     center: DVec3,
-    /// Longest way along the curve from the center to an end: no point of the piece is farther.
+    /// Largest arc length from the center to an end. No point of the piece is farther from the center.
     radius: f64,
-    /// Position at the start, and the vector from there to the end.
+    /// Position at the start, and the vector from the start to the end.
     chord: [DVec3; 2],
-    /// No point of the piece is farther from its chord: its inscribed triangle with the farthest point turns no more
-    /// than the piece itself, so that length · turning / 4 is enough.
+    /// Upper bound of the distance of the piece from its chord: length · turning / 4. The triangle of the chord
+    /// and the farthest point turns at most as much as the piece itself.
     height: f64,
-    /// Queries nearer than this to every point of the piece have one minimum on it at most.
+    /// If all points of the piece are nearer to the query than this, the piece has at most one minimum.
     calm_distance: f64,
     is_first: bool,
     is_last: bool,
-    /// Where the slope at the end is taken: at the start of the domain for the last piece of a closed curve, so that
-    /// the two pieces that meet there see the same sign and no minimum falls between them by rounding.
+    /// Parameter at which the slope at the end is evaluated. For the last piece of a closed curve, it is the
+    /// start of the domain. Both pieces at the seam then use the same sign, so rounding cannot lose a minimum
+    /// between them.
     end_of_slope: f64,
 }
 
 impl Piece {
-    /// Distance from `query` to the chord, and the parameter at the share of the chord that is nearest.
+    /// Distance from `query` to the chord, and an estimate of the nearest parameter: that of the nearest fraction
+    /// of the chord.
     fn chord_distance(&self, query: DVec3) -> (f64, f64) {
         let [start, chord] = self.chord;
         let offset = query - start;
         let squared = chord.length_squared();
-        let share = if squared > 0.0 { (offset.dot(chord) / squared).clamp(0.0, 1.0) } else { 0.5 };
-        ((offset - chord * share).length(), self.start + (self.end - self.start) * share)
+        let fraction = if squared > 0.0 { (offset.dot(chord) / squared).clamp(0.0, 1.0) } else { 0.5 };
+        ((offset - chord * fraction).length(), self.start + (self.end - self.start) * fraction)
     }
 }
 
-/// Half the derivative of the squared distance by the parameter.
+/// Half the derivative of the squared distance with respect to the parameter.
 struct Slope {
     value: f64,
-    /// Its own derivative, for Newton's method.
+    /// Derivative of `value`, for Newton's method.
     derivative: f64,
-    /// A positive multiple of the derivative that it has by arc length, 1 − κ n · (query − x): unlike the derivative by
-    /// the parameter, it does not change where the parameter runs faster. Where its sign is constant there is one root
-    /// at most.
+    /// A positive multiple of the derivative with respect to arc length, 1 − κ n · (query − x). Unlike
+    /// `derivative`, it does not depend on the parametrization. An interval of constant sign has at most one
+    /// root.
     rise: f64,
 }
 
 impl<C: Curve> ClosestPoint<C> {
-    /// Prepares `curve` for queries.
+    /// Splits `curve` into pieces and computes their bounds.
     pub fn new(curve: C) -> Self {
         let mut pieces = Vec::new();
         for pair in curve.breaks().windows(2) {
@@ -109,7 +126,7 @@ impl<C: Curve> ClosestPoint<C> {
         &self.curve
     }
 
-    /// Smallest and largest coordinates of a box that holds the curve.
+    /// Minimum and maximum corner of a box that contains the curve.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let ends = |piece: &Piece| [piece.chord[0], piece.chord[0] + piece.chord[1]];
         self.pieces.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), piece| {
@@ -118,7 +135,8 @@ impl<C: Curve> ClosestPoint<C> {
         })
     }
 
-    /// The point of the curve nearest to `query`; of several at the same distance, the one with the smallest parameter.
+    /// Returns the point of the curve nearest to `query`. If several are equally near, returns the one with the
+    /// smallest parameter.
     pub fn closest(&self, query: DVec3) -> CurveProjection {
         let mut squared = f64::INFINITY;
         let mut nearest = 0;
@@ -135,7 +153,7 @@ impl<C: Curve> ClosestPoint<C> {
             position: piece.center,
             distance: squared.sqrt(),
         };
-        // The most promising piece first: it makes the bound that drops the others.
+        // Search the piece with the nearest center first. Its result bounds the search of the others.
         self.improve(piece, query, &mut best);
         for (index, (center, radius)) in self.spheres.iter().enumerate() {
             let reach = best.distance + radius;
@@ -146,7 +164,7 @@ impl<C: Curve> ClosestPoint<C> {
         best
     }
 
-    /// Takes the minima of a piece into account, unless its chord says that they are farther than `best`.
+    /// Updates `best` with the minima of a piece, unless its chord shows that all are farther.
     fn improve(&self, piece: &Piece, query: DVec3, best: &mut CurveProjection) {
         let (chord_distance, guess) = piece.chord_distance(query);
         if chord_distance - piece.height > best.distance {
@@ -160,15 +178,28 @@ impl<C: Curve> ClosestPoint<C> {
         });
     }
 
-    /// The nearest points for many queries, in their order.
+    /// Returns the nearest points of many queries, in the same order.
     pub fn closest_many(&self, queries: &[DVec3]) -> Vec<CurveProjection> {
         queries.iter().map(|&query| self.closest(query)).collect()
     }
 
-    /// Every local minimum of the distance to `query` that is not farther than `within`, nearest first.
+    /// Returns all local minima of the distance to `query` up to the distance `within`, nearest first.
     ///
-    /// The ends of an open curve count where the distance grows from them. A query at the center of an arc has no
-    /// isolated minimum; [`closest`](Self::closest) still answers there.
+    /// An end of an open curve is a minimum if the distance grows from it. A query at the center of an arc has
+    /// no isolated minimum, but [`closest`](Self::closest) still returns a point.
+    ///
+    /// # Examples
+    /// ```
+    /// use glam::DVec3;
+    /// use isochore_curve::{Bezier, ClosestPoint};
+    ///
+    /// // An arch: a point below its top is near both of its legs.
+    /// let arch = Bezier::new([(-1.0, 0.0), (-1.0, 4.0), (1.0, 4.0), (1.0, 0.0)].map(|(x, y)| DVec3::new(x, y, 0.0)).into());
+    /// let search = ClosestPoint::new(&arch);
+    /// let branches = search.branches(DVec3::new(0.1, 0.5, 0.0), 2.0);
+    /// assert_eq!(branches.len(), 2);
+    /// assert_eq!(branches[0], search.closest(DVec3::new(0.1, 0.5, 0.0)));
+    /// ```
     pub fn branches(&self, query: DVec3, within: f64) -> Vec<CurveProjection> {
         let mut found = Vec::new();
         for piece in &self.pieces {
@@ -203,7 +234,8 @@ impl<C: Curve> ClosestPoint<C> {
         }
     }
 
-    /// Reports the local minima of a piece: roots with rising slope in (start, end], and the ends of an open curve.
+    /// Reports the local minima of a piece: roots of the slope in (start, end] at which it rises, and the ends of an
+    /// open curve.
     fn minima(&self, piece: &Piece, query: DVec3, guess: f64, report: &mut impl FnMut(CurveProjection)) {
         let start = self.slope(piece.start, query);
         let end = self.slope(piece.end_of_slope, query);
@@ -222,6 +254,7 @@ impl<C: Curve> ClosestPoint<C> {
         self.roots((piece.start, &start), (piece.end, &end), query, QUERY_DEPTH, report);
     }
 
+    /// Reports the minima in (low, high]. Halves the interval until `rise` has one sign on it.
     fn roots(
         &self,
         (low, at_low): (f64, &Slope),
@@ -244,7 +277,8 @@ impl<C: Curve> ClosestPoint<C> {
         }
     }
 
-    /// The root of the slope in (low, high], where it is negative at `low` and not at `high`.
+    /// Root of the slope in (low, high], by Newton's method with bisection. The slope is negative at `low` and not
+    /// negative at `high`.
     fn root(&self, mut low: f64, mut high: f64, guess: f64, query: DVec3) -> f64 {
         let size = high - low;
         let mut parameter = guess;
@@ -266,10 +300,10 @@ impl<C: Curve> ClosestPoint<C> {
     }
 }
 
-/// Halves [start, end] until the tangent turns little, and appends the parts.
+/// Halves [start, end] until its turning is at most [`PIECE_TURNING`], and appends the parts to `pieces`.
 fn cut(curve: &impl Curve, start: f64, end: f64, depth: u32, pieces: &mut Vec<Piece>) {
     let middle = 0.5 * (start + end);
-    // Integrated, since sampled tangents of a whole turn are all alike.
+    // Integrate the turning: differences of sampled tangents would miss full turns.
     let turning = gauss(&mut |u| curve.jet(u).tangent_derivative().length(), start, end);
     if turning > PIECE_TURNING && depth > 0 {
         cut(curve, start, middle, depth - 1, pieces);
@@ -277,12 +311,13 @@ fn cut(curve: &impl Curve, start: f64, end: f64, depth: u32, pieces: &mut Vec<Pi
         return;
     }
     let speed = &mut |u| curve.jet(u).speed();
-    // The margins cover the errors of the quadratures on so small a turn, and rounding.
+    // The margins cover rounding and the quadrature error, which is small because the turning is.
     let (left, right) = (gauss(speed, start, middle), gauss(speed, middle, end));
     let radius = left.max(right) * (1.0 + 1e-6);
     let height = (0.25 * turning * (1.0 + 1e-3) * (left + right)).min(2.0 * radius);
-    // Nearer than the center of curvature there is no second minimum. The curvature is sampled, hence the factor.
-    let samples = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| curve.jet(start + (end - start) * share));
+    // Queries nearer than the center of curvature have no second minimum. The factor allows for the error of the
+    // sampled curvature.
+    let samples = [0.0, 0.25, 0.5, 0.75, 1.0].map(|fraction| curve.jet(start + (end - start) * fraction));
     let curvature = samples.iter().map(|jet| jet.curvature()).fold(0.0, f64::max);
     let (first, last) = (curve.position(start), curve.position(end));
     pieces.push(Piece {
@@ -306,7 +341,7 @@ mod tests {
     use super::*;
     use crate::{Bezier, CubicSpline, EndCondition, Parametrization, TrigonometricCurve};
 
-    /// Nearest of many samples: an upper bound within the sampling error of the true distance.
+    /// Distance to the nearest of many samples: an upper bound, accurate up to the sampling error.
     fn brute_force(curve: &impl Curve, query: DVec3, samples: usize) -> f64 {
         let (first, last) = curve.domain();
         (0..=samples)
@@ -315,10 +350,10 @@ mod tests {
     }
 
     #[test]
-    fn helix_axis_points_have_one_branch_a_turn() {
+    fn points_beside_a_helix_have_one_branch_per_turn() {
         let helix = TrigonometricCurve::helix(1.0, 0.05, (0.0, 4.0 * std::f64::consts::TAU));
         let search = ClosestPoint::new(&helix);
-        // Outside the helix near u = 2 turns: minima on that turn and on its neighbors.
+        // A point outside the helix, beside its second turn.
         let query = helix.position(2.0 * std::f64::consts::TAU) * DVec3::new(1.5, 1.0, 1.0);
         let branches = search.branches(query, 10.0);
         assert_eq!(branches.len(), 5, "one minimum on each of the turns 0 to 4: {branches:?}");
@@ -329,15 +364,15 @@ mod tests {
     }
 
     #[test]
-    fn bounds_hold_the_curve_closely() {
+    fn bounds_contain_the_curve_tightly() {
         let knot = TrigonometricCurve::torus_knot();
         let (low, high) = ClosestPoint::new(&knot).bounds();
         let samples = (0..1000).map(|i| knot.position(f64::from(i) * 0.001 * std::f64::consts::TAU));
-        let (least, most) =
+        let (min, max) =
             samples.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-        assert!(low.cmple(least).all() && high.cmpge(most).all());
-        // Pieces are shorter than 0.15 and turn by 0.3 at most: a quarter of the product is 0.011.
-        assert!((least - low).max_element() < 0.012 && (high - most).max_element() < 0.012);
+        assert!(low.cmple(min).all() && high.cmpge(max).all());
+        // Pieces are shorter than 0.15 and turn by at most 0.3: a quarter of the product is 0.011.
+        assert!((min - low).max_element() < 0.012 && (high - max).max_element() < 0.012);
     }
 
     #[test]
@@ -363,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn the_center_of_a_circle_still_has_an_answer() {
+    fn the_center_of_a_circle_has_a_closest_point() {
         let circle = TrigonometricCurve::helix(2.0, 0.0, (0.0, std::f64::consts::TAU));
         let found = ClosestPoint::new(&circle).closest(DVec3::ZERO);
         assert!((found.distance - 2.0).abs() < 1e-15);
@@ -373,7 +408,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(300))]
 
         #[test]
-        fn nothing_is_nearer_than_the_closest(
+        fn no_sample_is_nearer_than_the_closest_point(
             coordinates in prop::collection::vec(-1.0..1.0f64, 18),
             query in prop::array::uniform3(-1.5..1.5f64),
             closed: bool,
@@ -388,8 +423,8 @@ mod tests {
             let search = ClosestPoint::new(&spline);
             let found = search.closest(query);
             let sampled = brute_force(&spline, query, 20_000);
-            prop_assert!(found.distance <= sampled + 1e-15, "{} against {sampled}", found.distance);
-            // Samples are 1e-3 apart at most, and distances have slope one.
+            prop_assert!(found.distance <= sampled + 1e-15, "{}, sampled {sampled}", found.distance);
+            // Samples are at most 1e-3 apart, and the distance has slope one.
             prop_assert!(found.distance >= sampled - 1e-3);
             prop_assert!((spline.position(found.parameter) - found.position).length() == 0.0);
             // The closest point is the first of the branches.
@@ -400,7 +435,7 @@ mod tests {
 
     #[test]
     fn all_branches_are_found() {
-        // Sign changes of the sampled slope count the minima; queries lie where no two of them merge.
+        // The sign changes of the sampled slope are the minima. No two minima of these queries merge.
         let knot = TrigonometricCurve::torus_knot();
         let search = ClosestPoint::new(&knot);
         for query in [DVec3::new(0.1, 0.2, 0.05), DVec3::new(0.6, 0.1, 0.0), DVec3::new(1.4, 0.3, -0.2)] {

@@ -1,24 +1,34 @@
-//! What a parametric space curve is, and its differential geometry at a parameter.
+//! Parametric space curves and their differential geometry at a parameter.
 
 use std::fmt::Debug;
 
 use glam::DVec3;
 
-/// A space curve given by a formula, three times differentiable between its [breaks](Curve::breaks).
+/// A parametric space curve, three times differentiable between its [breaks](Curve::breaks).
+///
+/// # Examples
+/// ```
+/// use isochore_curve::{Curve, TrigonometricCurve};
+///
+/// let helix = TrigonometricCurve::helix(2.0, 0.0, (0.0, 3.0));
+/// assert_eq!(helix.domain(), (0.0, 3.0));
+/// assert!((helix.jet(1.0).curvature() - 0.5).abs() < 1e-15);
+/// ```
 pub trait Curve: Debug + Send + Sync {
-    /// First and last parameter; the first is the smaller.
+    /// First and last parameter. The first is smaller than the last.
     fn domain(&self) -> (f64, f64);
 
-    /// Position and derivatives at `parameter`, which implementors clamp or wrap into the domain where they must.
+    /// Position and derivatives at `parameter`. An implementation that is not defined outside its domain clamps
+    /// or wraps the parameter into it.
     fn jet(&self, parameter: f64) -> CurveJet;
 
-    /// True where the last point of the domain is the first one again, with the same tangent.
+    /// Returns true if the curve ends at its first point, with the same tangent.
     fn is_closed(&self) -> bool {
         false
     }
 
-    /// Parameters where a derivative up to the third may jump, ends of the domain included, ascending.
-    /// Quadratures never integrate across one.
+    /// Ascending parameters at which a derivative up to the third is discontinuous, including the ends of the
+    /// domain. Quadratures do not integrate across them.
     fn breaks(&self) -> Vec<f64> {
         let (first, last) = self.domain();
         vec![first, last]
@@ -52,7 +62,7 @@ impl<C: Curve + ?Sized> Curve for &C {
     }
 }
 
-/// Position of a curve and its first three derivatives by the parameter.
+/// Position of a curve and its first three derivatives with respect to the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveJet {
     /// Position, model units.
@@ -71,12 +81,13 @@ impl CurveJet {
         self.first.length()
     }
 
-    /// Unit tangent; zero at a cusp, where the speed vanishes.
+    /// Unit tangent. Zero at a cusp, where the speed is zero.
     pub fn tangent(&self) -> DVec3 {
         self.first.normalize_or_zero()
     }
 
-    /// Curvature vector κ n, per model unit: the derivative of the unit tangent by arc length. Zero at a cusp.
+    /// Curvature vector κ n, per model unit: derivative of the unit tangent with respect to arc length. Zero at
+    /// a cusp.
     pub fn curvature_vector(&self) -> DVec3 {
         let squared_speed = self.first.length_squared();
         if squared_speed == 0.0 {
@@ -91,32 +102,33 @@ impl CurveJet {
         if speed == 0.0 { 0.0 } else { self.first.cross(self.second).length() / (speed * speed * speed) }
     }
 
-    /// Torsion det(x′, x″, x‴) / |x′ × x″|², per model unit, with n′ = −κ t + τ b. Zero where the curvature vanishes,
-    /// where torsion has no value.
+    /// Torsion det(x′, x″, x‴) / |x′ × x″|², per model unit, with n′ = −κ t + τ b. Zero if the curvature is
+    /// zero, because torsion is then undefined.
     pub fn torsion(&self) -> f64 {
         let binormal = self.first.cross(self.second);
         let squared = binormal.length_squared();
         if squared == 0.0 { 0.0 } else { binormal.dot(self.third) / squared }
     }
 
-    /// Derivative of the unit tangent by the parameter. Zero at a cusp.
+    /// Derivative of the unit tangent with respect to the parameter. Zero at a cusp.
     pub fn tangent_derivative(&self) -> DVec3 {
         self.curvature_vector() * self.speed()
     }
 
-    /// Unit principal normal, or none where the curvature vanishes.
+    /// Unit principal normal, or `None` if the curvature is zero.
     pub fn normal(&self) -> Option<DVec3> {
         self.curvature_vector().try_normalize()
     }
 }
 
-/// The jet of a curve of `segments`, at least one, at the number of a segment plus the parameter inside it.
+/// Jet of a curve that consists of `segments` (at least one). The parameter is the number of the segment plus
+/// the parameter within it.
 pub(crate) fn jet_of_segments(segments: &[impl Curve], parameter: f64) -> CurveJet {
     let segment = (parameter.max(0.0) as usize).min(segments.len() - 1);
     segments[segment].jet(parameter - segment as f64)
 }
 
-/// The parameters where the segments of such a curve meet, ends included.
+/// Parameters at which the segments of such a curve meet, including its ends.
 pub(crate) fn joints(segments: usize) -> Vec<f64> {
     (0..=segments).map(|segment| segment as f64).collect()
 }

@@ -1,27 +1,41 @@
 //! The double reflection step.
 //!
 //! Source: W. Wang, B. Jüttler, D. Zheng, Y. Liu, Computation of rotation minimizing frames, ACM Transactions on
-//! Graphics 27(1), 2008, table I. Symbols there: v₁ = `chord`, t_i = `start`, t_{i+1} = `end`, r_i = `r`.
+//! Graphics 27(1), 2008, table I. Symbols of the paper: v₁ = `chord`, t_i = `start`, t_{i+1} = `end`, r_i = `r`.
 
 use glam::DVec3;
 
-/// Squared chords below this are no chord: their squares are denormal and divide badly. A chord this short is 1e-150
-/// long.
+/// Smallest squared length of a chord, which is then 1e-150 long. Smaller: squares are subnormal and lose
+/// digits in the division. Larger: short chords of tiny models
+/// are rejected.
 const SHORTEST_SQUARED_CHORD: f64 = 1e-300;
 
-/// The squared vector of the second reflection, at most 4 and near 4 for well sampled curves, must not be below this.
-/// Larger: coarse samples that still work are refused (8 samples of the torus knot reach 0.9). Smaller: a reversed
-/// tangent passes, and the frame jumps on rounding, since the limit depends on the direction in which this vector
-/// vanishes.
+/// Smallest squared length of the vector of the second reflection. It is at most 4, and near 4 for well
+/// sampled curves. Larger: usable coarse samples are rejected (8 samples of the torus knot reach 0.9).
+/// Smaller: a reversed tangent is accepted, and rounding makes the frame jump, because the limit depends
+/// on the direction from which this vector approaches zero.
 pub(crate) const SMALLEST_SECOND_REFLECTION: f64 = 0.04;
 
-/// Carries `r` from the normal plane of the unit tangent `start` to that of `end`, by a reflection along `chord` and
-/// one that brings the tangents together. None where the two reflections are not determined.
+/// Moves `r` from the normal plane of the unit tangent `start` to that of `end`: one reflection along
+/// `chord`, and a second one that maps the reflected `start` to `end`. Returns `None` if the reflections
+/// are not determined.
 ///
-/// The result is exact for curves on a sphere or plane and of fifth order in the length of the step for others. The
-/// step commutes with inversions, and back and forth is the identity.
+/// The result is exact for curves on a sphere or plane. For other curves, its error is of fifth order in
+/// the length of the step. The step commutes with inversions, and the step of the reversed segment is its
+/// inverse.
 ///
-/// Only the direction of `chord` matters. `r` may have any length, which is kept.
+/// Only the direction of `chord` matters. The length of `r` is arbitrary and preserved.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::reflect_twice;
+///
+/// // A quarter of a circle in the xy-plane: the inward normal stays the inward normal.
+/// let r = reflect_twice(DVec3::new(-1.0, 1.0, 0.0), DVec3::Y, -DVec3::X, -DVec3::X);
+/// assert!(r.is_some_and(|r| r.distance(-DVec3::Y) < 1e-15));
+/// assert_eq!(reflect_twice(DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z), None);
+/// ```
 #[inline]
 pub fn reflect_twice(chord: DVec3, start: DVec3, end: DVec3, r: DVec3) -> Option<DVec3> {
     let first = chord.dot(chord);
@@ -29,7 +43,7 @@ pub fn reflect_twice(chord: DVec3, start: DVec3, end: DVec3, r: DVec3) -> Option
     let reflected_tangent = start - chord * (factor * chord.dot(start));
     let difference = end - reflected_tangent;
     let second = difference.dot(difference);
-    // False for NaN too.
+    // Also false for NaN.
     if !(first >= SHORTEST_SQUARED_CHORD && second >= SMALLEST_SECOND_REFLECTION) {
         return None;
     }
@@ -47,10 +61,10 @@ pub struct AxisAngle {
 }
 
 impl AxisAngle {
-    /// The rotation that [`reflect_twice`] applies. None where it has none.
+    /// The rotation that [`reflect_twice`] applies. Returns `None` if [`reflect_twice`] does.
     ///
-    /// For those who need the motion itself: along straight parts the axis is rounding (it is `end` where there is no
-    /// rotation at all), so frames should be carried by the reflections.
+    /// Use it to obtain the motion itself, and use the reflections to move frames. On straight parts the
+    /// axis is rounding error; if the angle is zero, it is `end`.
     ///
     /// Source: Wang et al. 2008, section 4.5, where γ is misprinted: γ⁻² = |Δx|² |Δt|² + 4 (Δx · t₀)(Δx · t₁).
     pub fn of_double_reflection(chord: DVec3, start: DVec3, end: DVec3) -> Option<Self> {
@@ -60,17 +74,17 @@ impl AxisAngle {
         if second < SMALLEST_SECOND_REFLECTION {
             return None;
         }
-        // unit × difference = unit × (end − start), in the form that does not cancel.
+        // unit × difference = unit × (end − start). The second form does not cancel.
         let axis = unit.cross(end - start);
         let angle = 2.0 * libm::atan2(axis.length(), unit.dot(difference));
         Some(Self { axis: axis.try_normalize().unwrap_or(end), angle })
     }
 
-    /// `vector` rotated.
+    /// Rotates `vector`.
     pub fn rotate(&self, vector: DVec3) -> DVec3 {
         let (sin, cos) = libm::sincos(self.angle);
         let half = libm::sin(0.5 * self.angle);
-        // Rodrigues with 1 − cos = 2 sin²(angle/2).
+        // Rodrigues' formula with 1 − cos = 2 sin²(angle/2).
         vector * cos + self.axis.cross(vector) * sin + self.axis * (self.axis.dot(vector) * 2.0 * half * half)
     }
 }
@@ -88,7 +102,7 @@ mod tests {
             let (chord, start, end) = (b.position - a.position, a.tangent(), b.tangent());
             let r = a.normal().unwrap();
             let motion = AxisAngle::of_double_reflection(chord, start, end).unwrap();
-            // A dozen roundings of numbers of size one.
+            // About twelve roundings of numbers of size one.
             assert!((motion.rotate(r) - reflect_twice(chord, start, end, r).unwrap()).length() < 3e-15);
             assert!((motion.rotate(start) - end).length() < 3e-15);
             assert!(motion.angle < std::f64::consts::PI);
@@ -96,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn straight_steps_do_nothing() {
+    fn straight_steps_do_not_rotate() {
         assert_eq!(reflect_twice(DVec3::X * 3.0, DVec3::X, DVec3::X, DVec3::Y), Some(DVec3::Y));
         assert_eq!(AxisAngle::of_double_reflection(DVec3::X, DVec3::X, DVec3::X).unwrap().angle, 0.0);
     }
@@ -109,9 +123,10 @@ mod tests {
         assert_eq!(reflect_twice(DVec3::NAN, DVec3::Y, DVec3::Y, DVec3::Z), None);
     }
 
-    /// Theorem 4.4 with its sign: the exact frame is K h⁵/720 ahead of the step. On a helix K = κ² τ³ (κ, τ constant).
+    /// Theorem 4.4 with its sign: the exact frame is K h⁵/720 ahead of the step. On a helix, K = κ² τ³ with
+    /// constant κ and τ.
     #[test]
-    fn the_error_of_a_step_is_the_published_constant() {
+    fn the_error_of_a_step_has_the_published_constant() {
         let (radius, rise) = (1.0, 0.5);
         let helix = TrigonometricCurve::helix(radius, rise, (0.0, 1.0));
         let speed = (radius * radius + rise * rise).sqrt();
@@ -120,13 +135,14 @@ mod tests {
             let (kappa, tau) = (a.curvature(), a.torsion());
             let chord = b.position - a.position;
             let stepped = reflect_twice(chord, a.tangent(), b.tangent(), a.normal().unwrap()).unwrap();
-            // Exact: the Frenet normal turned by −τ h about the tangent.
+            // Exact result: the Frenet normal rotated by −τ h about the tangent.
             let exact = crate::Frame::new(b.normal().unwrap(), b.tangent()).turned(-tau * h);
             -exact.angle_to(stepped) * 720.0 / (kappa * kappa * tau * tau * tau * h.powi(5))
         };
-        // 1.0000238 at 0.05 in higher precision, where the rounding of the angle, 1e-16, is 5e-6 of it.
+        // In higher precision the ratio at 0.05 is 1.0000238. The rounding of the angle, 1e-16, changes it by
+        // 5e-6.
         assert!((ratio(0.05) - 1.0000238).abs() < 5e-6, "{}", ratio(0.05));
-        // The next term is of second order, so that it is known from longer steps; three digits given.
+        // The next term is of second order, so longer steps determine it, to three digits.
         for h in [0.1, 0.2] {
             let term = (ratio(h) - 1.0) * (0.05 / h) * (0.05 / h);
             assert!((term - 2.38e-5).abs() < 1e-7, "{h}: {term:e}");

@@ -1,4 +1,4 @@
-//! Orthonormal frames along a spine, and the methods that carry them from sample to sample.
+//! Orthonormal frames along a spine, and the methods that move them from sample to sample.
 
 use glam::DVec3;
 
@@ -9,126 +9,175 @@ use crate::rotation::rotate_minimally;
 use crate::tangents_only::chord_from_tangents;
 
 /// A right-handed orthonormal frame: s = t × r, r × s = t.
+///
+/// # Examples
+/// ```
+/// use glam::{DVec2, DVec3};
+/// use isochore_curve::Frame;
+///
+/// let frame = Frame::new(DVec3::X, DVec3::Z);
+/// assert_eq!(frame.s, DVec3::Y);
+/// assert_eq!(frame.offset(DVec2::new(2.0, 3.0)), DVec3::new(2.0, 3.0, 0.0));
+/// let turned = frame.turned(0.5);
+/// assert!((frame.angle_to(turned.r) - 0.5).abs() < 1e-15);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// Reference vector, normal to the curve.
     pub r: DVec3,
-    /// The second normal vector.
+    /// Second normal vector.
     pub s: DVec3,
     /// Tangent.
     pub t: DVec3,
 }
 
 impl Frame {
-    /// The frame with reference vector `r` and tangent `t`, which are orthonormal.
+    /// Creates a frame from its reference vector `r` and tangent `t`, which must be orthonormal.
     pub fn new(r: DVec3, t: DVec3) -> Self {
         Self { r, s: t.cross(r), t }
     }
 
-    /// This frame turned about its tangent by `angle` radians, right-handed.
+    /// Rotates the frame about its tangent by `angle` radians, right-handed.
     pub fn turned(&self, angle: f64) -> Self {
         let (sin, cos) = libm::sincos(angle);
         Self { r: self.r * cos + self.s * sin, s: self.s * cos - self.r * sin, t: self.t }
     }
 
-    /// Where `offset` = (along r, along s) lies from the spine point.
+    /// Vector from the spine point to the point with coordinates `offset` along r and s.
     pub fn offset(&self, offset: glam::DVec2) -> DVec3 {
         self.r * offset.x + self.s * offset.y
     }
 
-    /// Angle about the tangent from this frame's reference vector to `direction`, in (−π, π]. Zero for a direction
-    /// along the tangent.
+    /// Angle about the tangent from the reference vector to `direction`, in (−π, π]. Zero if `direction` is
+    /// parallel to the tangent.
     pub fn angle_to(&self, direction: DVec3) -> f64 {
         libm::atan2(self.s.dot(direction), self.r.dot(direction))
     }
 }
 
-/// How frames are carried along a [`Spine`].
+/// Method that moves frames along a [`Spine`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FrameMethod {
-    /// Double reflection (Wang et al. 2008): fourth order, exact on spheres and planes, needs no threshold.
+    /// Double reflection (Wang et al. 2008): fourth order, exact on spheres and planes.
     #[default]
     DoubleReflection,
     /// Projection along the chord into the next normal plane (Klok 1986): second order.
     Projection,
     /// Smallest rotation between the tangents (Bloomenthal 1990): second order.
     Rotation,
-    /// Double reflection with chords estimated from the tangents of uniform samples (equation 17): fourth order,
-    /// without points.
+    /// Double reflection with chords estimated from the tangents of uniform samples (equation 17): fourth
+    /// order. It does not use the points.
     TangentsOnly,
 }
 
-/// What happens on a segment whose data determine no rotation.
+/// Treatment of segments whose data do not determine a rotation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DegenerateSegment {
-    /// An error names the segment.
+    /// Return an error that names the segment.
     #[default]
     Refuse,
-    /// The frame takes the smallest rotation between the tangents there, and the segment is listed.
+    /// Use the smallest rotation between the tangents, and list the segment in [`Frames::substituted`].
     Rotate,
 }
 
 /// Frames at the stations of a [`Spine`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frames {
-    /// One frame a station, one more than segments: on a closed spine the last is the frame that arrives back at the
-    /// first point.
+    /// One frame per station, one more than segments. On a closed spine, the last frame is the one that
+    /// arrives back at the first point.
     pub stations: Vec<Frame>,
-    /// Segments on which the smallest rotation stood in for the method: repeated points, and degenerate segments on
-    /// request.
+    /// Segments on which the smallest rotation replaced the method: repeated points, and degenerate
+    /// segments with [`DegenerateSegment::Rotate`].
     pub substituted: Vec<usize>,
 }
 
-/// Why a spine has no frames. Indices count from zero.
+/// Errors when computing frames. Indices count from zero.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum FrameError {
-    /// The reference vector has no part normal to the first tangent.
-    #[error("the reference vector is zero, not finite, or along the first tangent")]
-    Reference,
-    /// The data of a segment determine no rotation.
+    /// The reference vector has no component normal to the first tangent.
     #[error(
-        "segment {segment} determines no rotation: one of its tangents is reversed, the curve has a cusp there, or the \
-         samples are too coarse"
+        "the reference vector is zero, not finite, or parallel to the first tangent; choose one across the tangent"
+    )]
+    Reference,
+    /// The data of a segment do not determine a rotation.
+    #[error(
+        "segment {segment} does not determine a rotation: one of its tangents is reversed, the curve has a cusp, or \
+         the samples are too coarse"
     )]
     DegenerateSegment {
         /// The segment.
         segment: usize,
     },
     /// The tangents at the ends of a segment are opposite.
-    #[error("the tangents at the two ends of segment {segment} are opposite: reversed, a cusp, or too coarse samples")]
+    #[error(
+        "the tangents at the ends of segment {segment} are opposite: one of them is reversed, the curve has a cusp, or \
+         the samples are too coarse"
+    )]
     OppositeTangents {
         /// The segment.
         segment: usize,
     },
 }
 
-/// Squared sine of the angle between reference vector and tangent at least. Larger: usable vectors are refused.
-/// Smaller: the rounding of an almost parallel vector decides where the frame starts.
+/// Smallest squared sine of the angle between reference vector and tangent. Larger: usable vectors are
+/// rejected. Smaller: the rounding of an almost parallel vector determines the first frame.
 const SMALLEST_SQUARED_SINE: f64 = 1e-20;
 
-/// The part of `reference` normal to the unit vector `tangent`, as a unit vector.
+/// The component of `reference` normal to the unit vector `tangent`, normalized.
 ///
 /// # Errors
-/// [`FrameError::Reference`] where there is no such part.
+/// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to `tangent`.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::orthogonal_reference;
+///
+/// assert_eq!(orthogonal_reference(DVec3::new(3.0, 0.0, 5.0), DVec3::Z)?, DVec3::X);
+/// assert!(orthogonal_reference(DVec3::Z, DVec3::Z).is_err());
+/// # Ok::<(), isochore_curve::FrameError>(())
+/// ```
 pub fn orthogonal_reference(reference: DVec3, tangent: DVec3) -> Result<DVec3, FrameError> {
     let unit = (reference / reference.abs().max_element()).try_normalize().ok_or(FrameError::Reference)?;
     let across = unit.reject_from_normalized(tangent);
     if across.length_squared() < SMALLEST_SQUARED_SINE {
         return Err(FrameError::Reference);
     }
-    // A second pass removes what rounding left along the tangent of an almost parallel vector.
+    // If the vectors are almost parallel, rounding leaves a component along the tangent. A second pass
+    // removes it.
     Ok(across.normalize().reject_from_normalized(tangent).normalize())
 }
 
-/// Carries a frame along `spine` with the least rotation about the tangent, starting from the part of `reference`
-/// normal to the first tangent.
+/// Computes rotation-minimizing frames along `spine`. The first reference vector is the component of
+/// `reference` normal to the first tangent.
 ///
-/// Two equal neighboring points have no chord; every method then takes the smallest rotation between their tangents,
-/// and the segment is listed in [`Frames::substituted`].
+/// Two equal neighboring points have no chord. Every method then uses the smallest rotation between
+/// their tangents and lists the segment in [`Frames::substituted`].
 ///
 /// # Errors
-/// A reference along the first tangent, and segments that determine no rotation, unless `degenerate` lets them pass;
-/// opposite tangents never do where the smallest rotation is asked for.
+/// - [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
+/// - [`FrameError::DegenerateSegment`] if a segment does not determine a rotation and `degenerate` is
+///   [`DegenerateSegment::Refuse`].
+/// - [`FrameError::OppositeTangents`] if the smallest rotation is used between opposite tangents.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::{DegenerateSegment, FrameMethod, Spine, TrigonometricCurve, rotation_minimizing_frames};
+///
+/// // A planar curve keeps the normal of its plane.
+/// let circle = TrigonometricCurve::helix(1.0, 0.0, (0.0, 3.0));
+/// let spine = Spine::sample(&circle, 30)?;
+/// let frames = rotation_minimizing_frames(
+///     &spine,
+///     DVec3::Z,
+///     FrameMethod::DoubleReflection,
+///     DegenerateSegment::Refuse,
+/// )?;
+/// assert_eq!(frames.stations.len(), 31);
+/// assert!(frames.stations.iter().all(|frame| frame.r.distance(DVec3::Z) < 1e-14));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn rotation_minimizing_frames(
     spine: &Spine,
     reference: DVec3,

@@ -1,8 +1,9 @@
-//! Exact frames of analytic curves, by quadrature against a fixed direction.
+//! Exact frames of analytic curves, by quadrature relative to a fixed direction.
 //!
-//! Turn a fixed unit vector a to the tangent by the smallest rotation; it carries a frame along that turns about the
-//! tangent at the rate −a · (t × t′)/(1 + a · t) against a rotation-minimizing one. That rate has no singularity where
-//! the curvature vanishes, only where t = −a, so a is chosen away from every reversed tangent.
+//! The smallest rotation from a fixed unit vector a to the tangent t moves a frame along the curve. Relative to
+//! a rotation-minimizing frame, this frame rotates about the tangent at the rate −a · (t × t′)/(1 + a · t).
+//! The rate is regular at points of zero curvature. It is singular only at t = −a, so a is chosen far from
+//! all reversed tangents.
 
 use glam::DVec3;
 
@@ -11,16 +12,30 @@ use crate::quadrature::integrate;
 use crate::rotation::rotate_minimally;
 use crate::{Curve, Frame};
 
-/// Directions tried for the fixed vector, and tangents that each is tested against. More cost time and gain little once
-/// the least 1 + a · t is near its best.
+/// Candidates for the fixed vector. Larger: more time, and little gain once the smallest 1 + a · t is near its
+/// maximum. Smaller: the rate has steeper peaks, which need more panels.
 const DIRECTIONS: usize = 400;
+/// Tangents with which each candidate is compared, with the same trade-off.
 const TANGENTS: usize = 500;
 
-/// Rotation-minimizing frames of `curve` at ascending `parameters`, to about 1e-13 radians for smooth curves: the
-/// reference that sampled methods are measured against.
+/// Rotation-minimizing frames of `curve` at ascending `parameters`, accurate to about 1e-13 radians for smooth
+/// curves. They serve as the reference for sampled methods.
 ///
 /// # Errors
-/// [`FrameError::Reference`] where `reference` is along the first tangent.
+/// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::{TrigonometricCurve, exact_frames};
+///
+/// // On a helix, the frame lags behind the Frenet frame by the torsion: τ ds = 0.75/1.25² · 1.25 du.
+/// let helix = TrigonometricCurve::helix(1.0, 0.75, (0.0, 1.0));
+/// let frames = exact_frames(&helix, &[0.0, 1.0], -DVec3::X)?;
+/// let normal = DVec3::new(-1f64.cos(), -1f64.sin(), 0.0);
+/// assert!((frames[1].angle_to(normal) - 0.6).abs() < 1e-13);
+/// # Ok::<(), isochore_curve::FrameError>(())
+/// ```
 pub fn exact_frames(curve: &impl Curve, parameters: &[f64], reference: DVec3) -> Result<Vec<Frame>, FrameError> {
     let Some(&first) = parameters.first() else { return Ok(Vec::new()) };
     let fixed = far_from_reversed_tangents(curve);
@@ -32,7 +47,7 @@ pub fn exact_frames(curve: &impl Curve, parameters: &[f64], reference: DVec3) ->
     };
     let start = curve.jet(first).tangent();
     let reference = orthogonal_reference(reference, start)?;
-    let carried = rotate_minimally(start, fixed, reference).ok_or(FrameError::Reference)?;
+    let at_fixed = rotate_minimally(start, fixed, reference).ok_or(FrameError::Reference)?;
     let mut angle = 0.0;
     let mut previous = first;
     parameters
@@ -44,27 +59,27 @@ pub fn exact_frames(curve: &impl Curve, parameters: &[f64], reference: DVec3) ->
                 previous = end;
             }
             let tangent = curve.jet(parameter).tangent();
-            let r = rotate_minimally(fixed, tangent, carried).ok_or(FrameError::Reference)?;
+            let r = rotate_minimally(fixed, tangent, at_fixed).ok_or(FrameError::Reference)?;
             Ok(Frame::new(r, tangent).turned(angle))
         })
         .collect()
 }
 
-/// The direction a with the largest least 1 + a · t among evenly spread ones.
+/// The direction a that maximizes the minimum of 1 + a · t, among evenly distributed candidates.
 fn far_from_reversed_tangents(curve: &impl Curve) -> DVec3 {
     let (first, last) = curve.domain();
     let tangents: Vec<DVec3> =
         (0..TANGENTS).map(|i| curve.jet(first + (last - first) * i as f64 / (TANGENTS - 1) as f64).tangent()).collect();
     let mut best = (f64::NEG_INFINITY, DVec3::Z);
     for i in 0..DIRECTIONS {
-        // A spiral of equal areas over the sphere.
+        // A spiral on the sphere with equal areas between candidates.
         let height = 1.0 - (2 * i + 1) as f64 / DIRECTIONS as f64;
         let (sin, cos) = libm::sincos(i as f64 * 2.399_963_229_728_653);
         let radius = (1.0 - height * height).sqrt();
         let direction = DVec3::new(radius * cos, radius * sin, height);
-        let least = tangents.iter().map(|tangent| direction.dot(*tangent)).fold(f64::INFINITY, f64::min);
-        if least > best.0 {
-            best = (least, direction);
+        let min = tangents.iter().map(|tangent| direction.dot(*tangent)).fold(f64::INFINITY, f64::min);
+        if min > best.0 {
+            best = (min, direction);
         }
     }
     best.1
@@ -79,7 +94,7 @@ mod tests {
 
     #[test]
     fn torus_knot_has_the_known_frames() {
-        // 40-digit arithmetic. The quadrature is good to about 1e-13.
+        // Reference values from 40-digit arithmetic. The quadrature is accurate to about 1e-13.
         let frames =
             exact_frames(&TrigonometricCurve::torus_knot(), &[0.0, FRAC_PI_2, PI, 1.5 * PI, TAU], -DVec3::X).unwrap();
         let expected = [
@@ -88,15 +103,15 @@ mod tests {
             DVec3::new(-0.249_578_070_751_202_28, -0.436_761_623_814_604, 0.864_262_732_369_583_4),
         ];
         for (frame, r) in frames[1..4].iter().zip(expected) {
-            assert!((frame.r - r).length() < 1e-12, "{} against {r}", frame.r);
+            assert!((frame.r - r).length() < 1e-12, "{}, expected {r}", frame.r);
         }
         let closing = frames[4].angle_to(frames[0].r);
         assert!((closing + 2.875_711_997_865_894).abs() < 1e-12, "{closing}");
     }
 
     #[test]
-    fn inflections_do_no_harm() {
-        // Zheng 3.4: torsion explodes in the middle; the frame does not notice.
+    fn inflections_do_not_disturb_the_frame() {
+        // Zheng 3.4: the torsion at the midpoint is large, but the frame is not affected.
         let frames = exact_frames(&Bezier::s_curve(0.01), &[0.0, 1.0], DVec3::Z).unwrap();
         let exact = DVec3::new(0.0, -0.024_223_287_508_502, 0.999_706_573_121_47);
         assert!((frames[1].r - exact).length() < 1e-13, "{}", frames[1].r);

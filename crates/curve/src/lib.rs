@@ -1,34 +1,30 @@
-//! Spine curves and the frames that move along them.
+//! Spine curves and the moving frames along them.
 //!
-//! Terms used throughout:
+//! # Terms
 //!
-//! - A [`Curve`] is a formula: it gives a [`CurveJet`], position and derivatives, at a *parameter*. [`CubicSpline`],
-//!   [`Bezier`], [`TrigonometricCurve`] and any [closure](FunctionCurve) are curves.
-//! - A [`Spine`] is samples: points with unit tangents at *stations*, joined by *segments*, open or closed.
-//! - A [`Frame`] (r, s, t) is right-handed and orthonormal, with the tangent t and s = t × r; r is its *reference
-//!   vector*.
-//! - A frame is *rotation-minimizing* where it does not turn about the tangent. *Twist* is what is added to that, in
-//!   radians.
-//! - A *profile* is a planar curve with coordinates along r and s; swept along a spine it makes a surface, given here
-//!   as a [`PointGrid`] or as an exact [`RationalPatch`].
+//! - A [`Curve`] is given by a formula that returns a [`CurveJet`] (position and derivatives) at a
+//!   *parameter*. [`CubicSpline`], [`Bezier`], [`TrigonometricCurve`] and any
+//!   [closure](FunctionCurve) are curves.
+//! - A [`Spine`] is a sampled curve: points with unit tangents at *stations*, joined by *segments*,
+//!   open or closed.
+//! - A [`Frame`] (r, s, t) is right-handed and orthonormal. t is the tangent, r the *reference vector*,
+//!   and s = t × r.
+//! - A frame is *rotation-minimizing* if it does not rotate about the tangent. *Twist* is an additional
+//!   rotation about the tangent, in radians.
+//! - A *cross-section* is a planar curve with coordinates along r and s. Sweeping it along a spine gives
+//!   a surface: a [`PointGrid`], or an exact [`RationalPatch`].
 //!
-//! Lengths are in model units, coordinates are `f64`. Nothing here starts a thread, and the same input gives the same
-//! bits on every machine.
+//! Lengths are in model units and coordinates are `f64`. No function starts a thread, and the same input
+//! gives the same bits on every machine.
 //!
-//! # Frames along a curve
+//! # Formula
 //!
-//! ```
-//! use isochore_curve::{FrameMethod, Spine, TrigonometricCurve};
-//! use isochore_curve::{close_frames, closing_angle, rotation_minimizing_frames};
-//!
-//! let spine = Spine::sample(&TrigonometricCurve::torus_knot(), 256)?;
-//! let reference = spine.default_reference();
-//! let frames = rotation_minimizing_frames(&spine, reference, FrameMethod::DoubleReflection, Default::default())?;
-//! assert!((closing_angle(&frames.stations) + 2.8757).abs() < 1e-4);
-//! // The least twist that closes them, evenly along the curve.
-//! let closed = close_frames(&spine, &frames.stations, Default::default(), 0);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! The reference vector of a rotation-minimizing frame satisfies r′ = −(r · t′) t: its derivative is
+//! parallel to the tangent. The default method, *double reflection*, moves r from station i to station
+//! i + 1 by two reflections v ↦ v − 2 n (n · v) / (n · n). The first has the chord as its vector,
+//! n₁ = xᵢ₊₁ − xᵢ. It maps rᵢ to r̃ and tᵢ to t̃. The second has n₂ = tᵢ₊₁ − t̃. It maps t̃ to tᵢ₊₁ and
+//! r̃ to rᵢ₊₁. Source: W. Wang, B. Jüttler, D. Zheng, Y. Liu, Computation of rotation minimizing frames,
+//! ACM Transactions on Graphics 27(1), 2008.
 //!
 //! # Curves through points
 //!
@@ -40,6 +36,37 @@
 //! let spline = CubicSpline::open(&points, Parametrization::Centripetal, EndCondition::Natural)?;
 //! let nearest = ClosestPoint::new(&spline).closest(DVec3::new(1.0, 1.2, 0.0));
 //! assert!(nearest.distance < 0.2);
+//! # Ok::<(), isochore_curve::SplineError>(())
+//! ```
+//!
+//! # Frames along a curve
+//!
+//! ```
+//! use isochore_curve::{FrameMethod, Spine, TrigonometricCurve};
+//! use isochore_curve::{close_frames, closing_angle, rotation_minimizing_frames};
+//!
+//! let spine = Spine::sample(&TrigonometricCurve::torus_knot(), 256)?;
+//! let reference = spine.default_reference();
+//! let frames = rotation_minimizing_frames(&spine, reference, FrameMethod::DoubleReflection, Default::default())?;
+//! assert!((closing_angle(&frames.stations) + 2.8757).abs() < 1e-4);
+//! // The smallest twist that closes the frames, spread evenly along the curve.
+//! let closed = close_frames(&spine, &frames.stations, Default::default(), 0);
+//! assert!(closing_angle(&closed.stations).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Swept surfaces
+//!
+//! ```
+//! use glam::DVec2;
+//! use isochore_curve::{Spine, TrigonometricCurve, rotation_minimizing_frames, sweep};
+//!
+//! let spine = Spine::sample(&TrigonometricCurve::helix(1.0, 0.3, (0.0, 6.0)), 40)?;
+//! let frames =
+//!     rotation_minimizing_frames(&spine, spine.default_reference(), Default::default(), Default::default())?;
+//! let stations: Vec<_> = spine.points().iter().copied().zip(frames.stations).collect();
+//! let grid = sweep(&stations, &[DVec2::new(-0.1, 0.0), DVec2::new(0.1, 0.0)]);
+//! assert_eq!((grid.rows, grid.columns), (41, 2));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -47,22 +74,26 @@
 //!
 //! ```
 //! use glam::DVec2;
-//! use isochore_curve::{PhSpline, RationalPatch, RationalCrossSection, RationalRotation, TrigonometricCurve};
+//! use isochore_curve::{PhSpline, RationalCrossSection, RationalPatch, RationalRotation, TrigonometricCurve};
 //!
 //! let spline = PhSpline::follow(&TrigonometricCurve::torus_knot(), 1e-3)?;
-//! let profile = RationalCrossSection::polynomial(&[DVec2::new(-0.1, 0.05), DVec2::new(0.1, 0.05)]);
+//! let line = RationalCrossSection::polynomial(&[DVec2::new(-0.1, 0.05), DVec2::new(0.1, 0.05)]);
 //! let cubic = &spline.segments()[0];
-//! let patch = RationalPatch::sweep(cubic, &RationalRotation::symmetric(cubic), &profile, 0.0);
+//! let patch = RationalPatch::sweep(cubic, &RationalRotation::symmetric(cubic), &line, 0.0);
 //! assert!(patch.jet(0.5, 0.5).orthogonality().abs() < 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # What is not promised
+//! # Limits
 //!
-//! Sampled frames are exact on spheres and planes only; elsewhere double reflection is of fourth order in the spacing.
-//! Estimated tangents are of fourth order for five points or more. [`ClosestPoint::branches`] may miss a pair of minima
-//! that have just split beyond the center of curvature; [`ClosestPoint::closest`] then still returns one of them.
-//! [`reach`] is an estimate from above.
+//! - Frames of sampled spines are exact only on spheres and planes. On other curves, the error of double
+//!   reflection is of fourth order in the spacing.
+//! - Estimated tangents are of fourth order if there are at least five points.
+//! - [`ClosestPoint::branches`] can miss a pair of minima that have just separated beyond the center of
+//!   curvature. [`ClosestPoint::closest`] still returns one of the two.
+//! - [`reach()`] overestimates the reach of a curve; the error is of second order in the spacing.
+//! - Not every curve has a [`PhCubic`] or [`MoebiusSegment`] between two samples. Their constructors
+//!   return an error that names the segment or parameter.
 
 mod analytic;
 mod arc_length;
@@ -106,7 +137,7 @@ pub use inversion::Inversion;
 pub use moebius::{MoebiusSegment, MoebiusSpline, Tilt};
 pub use ph_cubic::{HermiteError, PhCubic, PhCubicError, PhSpline, PhSplineError, RationalRotation};
 pub use profile_surface::{
-    PointGrid, CrossSectionJet, RationalPatch, RationalCrossSection, SurfaceJet, profile_surface_curvature, regularity,
+    CrossSectionJet, PointGrid, RationalCrossSection, RationalPatch, SurfaceJet, profile_surface_curvature, regularity,
     safe_cross_section_radius, sweep, sweep_varying,
 };
 pub use projection::project_along_chord;

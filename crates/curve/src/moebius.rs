@@ -1,15 +1,15 @@
-//! Rational curves with rational rotation-minimizing frames: planar Pythagorean-hodograph cubics seen through an
-//! inversion.
+//! Rational curves with rational rotation-minimizing frames: images of planar Pythagorean-hodograph cubics under
+//! an inversion.
 //!
-//! Source: M. Bartoň, B. Jüttler, W. Wang, Construction of rational curves with rational rotation-minimizing frames via
-//! Möbius transformations, 2009. The end points and tangents of a segment lie on a sphere. An inversion about a point f
-//! of the sphere makes it a plane, in which a Pythagorean-hodograph cubic interpolates them; the plane's normal is a
-//! rotation-minimizing vector of it. The same inversion takes cubic and frame back, to a curve of degree six on the
-//! sphere.
+//! Source: M. Bartoň, B. Jüttler, W. Wang, Construction of rational curves with rational rotation-minimizing frames
+//! via Möbius transformations, 2009. The end points and tangents of a segment determine a sphere. An inversion
+//! about a point f of the sphere maps it to a plane. In the plane, a Pythagorean-hodograph cubic interpolates the
+//! mapped data, and the normal of the plane is a rotation-minimizing vector. The same inversion maps the cubic
+//! and its frame to a curve of degree six on the sphere.
 //!
-//! The paper takes the f farthest from the ends. The planar data can then have an inflection, which no cubic has: on a
-//! circular helix they always do. Such segments [tilt](Tilt::WhenNeeded): f moves sideways on the sphere, which bends
-//! the plane's image and leaves the frames at the joints unchanged. They are those of double reflection.
+//! The paper chooses the f farthest from the ends. The planar data can then require an inflection, which the cubic
+//! does not have; on a circular helix, they always do. Such segments [tilt](Tilt::WhenNeeded): f moves sideways on
+//! the sphere. This changes the planar data but not the frames at the joints, which are those of double reflection.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -23,27 +23,40 @@ mod spline;
 
 pub use spline::MoebiusSpline;
 
-/// Whether the center of inversion may leave its place opposite to the ends.
+/// Position of the center of inversion on the sphere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tilt {
-    /// It moves where the planar data turn so little that they have no cubic, or one of low accuracy.
+    /// The center moves sideways if the planar data turn so little that the cubic does not exist or is inaccurate.
     #[default]
     WhenNeeded,
-    /// It stays opposite to the ends, as published: kept for comparison.
+    /// The center stays opposite to the ends, as published. For comparison.
     Never,
 }
 
 /// A rational curve of degree six on a sphere, with a rational rotation-minimizing frame, over [0, 1].
+///
+/// # Examples
+/// ```
+/// use isochore_curve::{Curve, MoebiusSegment, Tilt, TrigonometricCurve};
+///
+/// let helix = TrigonometricCurve::helix(1.0, 0.5, (0.0, 0.5));
+/// let [start, end] = [helix.jet(0.0), helix.jet(0.5)];
+/// let segment =
+///     MoebiusSegment::hermite(start.position, end.position, start.first, end.first, Tilt::WhenNeeded)?;
+/// assert!(segment.position(1.0).distance(end.position) < 1e-14);
+/// assert!(segment.tangent(0.0).distance(start.tangent()) < 1e-14);
+/// # Ok::<(), isochore_curve::PhCubicError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MoebiusSegment {
     image: PhCubic,
-    /// Unit normal of the plane of `image`, whose pull-back is normal to the sphere.
+    /// Unit normal of the plane of `image`. The inversion maps it to a normal of the sphere.
     normal: DVec3,
     inversion: AnchoredInversion,
 }
 
-/// The inversion about a center f that fixes the point `anchor`, written so that f may be infinitely far, where it is a
-/// reflection in a plane.
+/// The inversion about a center f that fixes the point `anchor`. The formulas remain valid if f is infinitely far;
+/// the inversion is then a reflection in a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct AnchoredInversion {
     anchor: DVec3,
@@ -54,7 +67,7 @@ struct AnchoredInversion {
 }
 
 impl AnchoredInversion {
-    /// Numerator and denominator of image − anchor, for w = point − anchor.
+    /// Numerator and denominator of image − anchor, with w = point − anchor.
     fn quotient(&self, w: DVec3) -> (DVec3, f64) {
         let (e, k) = (self.direction, self.nearness);
         let along = e.dot(w);
@@ -67,15 +80,15 @@ impl AnchoredInversion {
         self.anchor + numerator / denominator
     }
 
-    /// The normalized differential at `point`: a reflection across the ray from f.
+    /// Applies the normalized differential at `point`: a reflection along the ray from f.
     fn vector(&self, point: DVec3, vector: DVec3) -> DVec3 {
         let ray = self.direction + (point - self.anchor) * self.nearness;
         vector - ray * (2.0 * ray.dot(vector) / ray.length_squared())
     }
 }
 
-/// A place for f in the plane that halves the chord: `direction` from its midpoint, one over the distance, and the
-/// normal of the plane that the sphere becomes.
+/// A candidate for f in the bisecting plane of the chord: `direction` from the midpoint of the chord, one over
+/// the distance from it, and the normal of the image plane of the sphere.
 #[derive(Debug, Clone, Copy)]
 struct Center {
     direction: DVec3,
@@ -84,10 +97,12 @@ struct Center {
 }
 
 impl MoebiusSegment {
-    /// The segment from `start` to `end` with the directions of the given tangents.
+    /// Interpolates two end points and the directions of their tangents.
     ///
     /// # Errors
-    /// Bad input, and data without a cubic in the plane for every center of inversion that `tilt` allows.
+    /// - [`PhCubicError::NotFinite`], [`PhCubicError::RepeatedPoint`] or [`PhCubicError::ZeroTangent`] if the
+    ///   input is invalid.
+    /// - Another [`PhCubicError`] if the planar data have no cubic for any center of inversion that `tilt` allows.
     pub fn hermite(
         start: DVec3,
         end: DVec3,
@@ -102,15 +117,16 @@ impl MoebiusSegment {
         }
         let mut centers = vec![opposite];
         let turning = ends.turning(&opposite).abs();
-        // Less turning than the chord has on the sphere: an inflection, or nearly one.
+        // If the planar tangents turn less than the chord on the sphere, the data are near an inflection.
         if turning < ends.length * ends.curvature {
             let tilted = ends.tilted_centers(FRAC_1_SQRT_2);
-            // The more turning, the farther from an inflection.
+            // Prefer more turning: it is farther from an inflection.
             let first = usize::from(ends.turning(&tilted[1]).abs() > ends.turning(&tilted[0]).abs());
             centers.insert(0, tilted[first]);
             centers.insert(1, tilted[1 - first]);
         }
-        // On a nearly flat sphere a tilt bends too little; a center nearby bends anything.
+        // On a nearly flat sphere, a tilted center changes the turning too little. A center near the chord always
+        // changes it.
         for distance in [4.0, 2.0, 1.0] {
             centers.extend(ends.near_centers(distance));
         }
@@ -124,17 +140,19 @@ impl MoebiusSegment {
         Err(failure.unwrap_or(PhCubicError::WrongDirection))
     }
 
-    /// The planar cubic whose inversion is this curve.
+    /// The planar cubic whose image under the inversion is this curve.
     pub fn image(&self) -> &PhCubic {
         &self.image
     }
 
-    /// The rotation-minimizing frames at `parameters`, with the reference vector that follows from the part of
-    /// `reference` normal to the tangent at 0. They are rational: constant coefficients on the plane's normal and its
-    /// product with the tangent, reflected.
+    /// Rotation-minimizing frames at `parameters`. The reference vector at 0 is the component of `reference`
+    /// normal to the tangent.
+    ///
+    /// The frames are rational: the reference vector is the reflection of a combination, with constant
+    /// coefficients, of the normal of the plane and its cross product with the tangent.
     ///
     /// # Errors
-    /// [`FrameError::Reference`] where `reference` is along the first tangent.
+    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
     pub fn frames(&self, parameters: &[f64], reference: DVec3) -> Result<Vec<Frame>, FrameError> {
         let start = orthogonal_reference(reference, self.tangent(0.0))?;
         let first = self.image.jet(0.0);
@@ -146,7 +164,7 @@ impl MoebiusSegment {
             .map(|&u| {
                 let jet = self.image.jet(u);
                 let r = self.normal * along + jet.tangent().cross(self.normal).normalize_or_zero() * across;
-                // One inversion exchanges left and right: the second normal vector is recomputed, not mapped.
+                // An inversion reverses orientation. Recompute the second normal vector instead of mapping it.
                 let t = self.inversion.vector(jet.position, jet.tangent());
                 let r = self.inversion.vector(jet.position, r).reject_from_normalized(t).normalize_or_zero();
                 Frame::new(r, t)
@@ -160,7 +178,7 @@ impl MoebiusSegment {
         self.inversion.vector(jet.position, jet.tangent())
     }
 
-    /// The seven homogeneous control points (w x, w y, w z, w) of the curve.
+    /// The seven homogeneous control points (w x, w y, w z, w).
     pub fn control_points(&self) -> [DVec4; 7] {
         let anchor = self.inversion.anchor;
         let (e, k) = (self.inversion.direction, self.inversion.nearness);
@@ -189,7 +207,7 @@ impl Curve for MoebiusSegment {
         let jet = self.image.jet(u);
         let (e, k) = (self.inversion.direction, self.inversion.nearness);
         let w = jet.position - self.inversion.anchor;
-        // x = n/q with n = w − e m and q = 1 + k m, where m = 2 e·w + k w·w; derivatives by the quotient rule.
+        // x = n/q with n = w − e m, q = 1 + k m and m = 2 e·w + k w·w. The derivatives follow from the quotient rule.
         let m = [
             2.0 * e.dot(w) + k * w.dot(w),
             2.0 * e.dot(jet.first) + 2.0 * k * w.dot(jet.first),
@@ -205,7 +223,7 @@ impl Curve for MoebiusSegment {
     }
 }
 
-/// Hermite data with the sphere through them.
+/// Hermite data with the sphere that they determine.
 #[derive(Debug, Clone, Copy)]
 struct Ends {
     start: DVec3,
@@ -214,11 +232,11 @@ struct Ends {
     /// Unit vector along the chord.
     chord: DVec3,
     length: f64,
-    /// One over the radius of the sphere, not negative; zero for a plane.
+    /// One over the radius of the sphere. Zero for a plane, never negative.
     curvature: f64,
     /// Unit vector from the chord's midpoint toward the center of the sphere.
     toward_center: DVec3,
-    /// Unit vector normal to the chord and to that.
+    /// Unit vector normal to the chord and to `toward_center`.
     sideways: DVec3,
     /// Distance from the midpoint to the center, in radii.
     depth: f64,
@@ -234,16 +252,16 @@ impl Ends {
         let chord = difference.try_normalize().ok_or(PhCubicError::RepeatedPoint)?;
         let t0 = start_tangent.try_normalize().ok_or(PhCubicError::ZeroTangent)?;
         let t1 = end_tangent.try_normalize().ok_or(PhCubicError::ZeroTangent)?;
-        // Reflecting the end in the plane that halves the chord brings both tangents into one tangent plane of the
-        // sphere.
+        // A reflection in the bisecting plane of the chord maps the tangent plane of the sphere at the end to that
+        // at the start. Both tangents then span the tangent plane at the start.
         let reflected = t1 - chord * (2.0 * t1.dot(chord));
         let sphere_normal = cross_of_independent(t0, reflected)
             .or_else(|| cross_of_independent(t0, chord))
             .unwrap_or_else(|| perpendicular(chord));
         let signed = 2.0 * sphere_normal.dot(chord) / length;
         let curvature = signed.abs().min(2.0 / length);
-        let inward = if signed < 0.0 { -sphere_normal } else { sphere_normal };
-        let toward_center = (inward - chord * (0.5 * curvature * length))
+        let toward_inside = if signed < 0.0 { -sphere_normal } else { sphere_normal };
+        let toward_center = (toward_inside - chord * (0.5 * curvature * length))
             .reject_from_normalized(chord)
             .try_normalize()
             .unwrap_or_else(|| perpendicular(chord));
@@ -261,17 +279,18 @@ impl Ends {
         })
     }
 
-    /// The f in a given direction from the midpoint, `cosine` of whose angle to the center is known, on the far side.
+    /// The far intersection of the sphere with a ray from the midpoint. `cosine` is that of the angle between the
+    /// ray and the direction to the center; the sign of `side` selects one of the two rays.
     fn center(&self, cosine: f64, side: f64) -> Center {
         let direction = self.toward_center * cosine + self.sideways * (side * (1.0 - cosine * cosine).max(0.0).sqrt());
         let along = cosine * self.depth;
         let half = 0.5 * self.curvature * self.length;
-        let reach = along + libm::hypot(half, along); // distance from the midpoint, in radii
-        self.place(direction, self.curvature / reach, self.depth / reach)
+        let distance = along + libm::hypot(half, along); // from the midpoint, in radii
+        self.center_at(direction, self.curvature / distance, self.depth / distance)
     }
 
-    fn place(&self, direction: DVec3, nearness: f64, depth_over_reach: f64) -> Center {
-        let normal = (direction - self.toward_center * depth_over_reach).normalize_or_zero();
+    fn center_at(&self, direction: DVec3, nearness: f64, relative_depth: f64) -> Center {
+        let normal = (direction - self.toward_center * relative_depth).normalize_or_zero();
         Center { direction, nearness, normal }
     }
 
@@ -283,10 +302,10 @@ impl Ends {
         [self.center(cosine, 1.0), self.center(cosine, -1.0)]
     }
 
-    /// The two f on the sphere at `distance` chords from the midpoint; none where the sphere is smaller.
+    /// The two f on the sphere at `distance` chord lengths from the midpoint. Empty if the sphere is smaller.
     fn near_centers(&self, distance: f64) -> Vec<Center> {
         let reach = distance * self.length;
-        // From reach = along + √(half² + along²) in radii.
+        // Solve reach = along + √(half² + along²), in radii, for along.
         let along = 0.5 * self.curvature * (reach - 0.25 * self.length * self.length / reach);
         let cosine = along / self.depth;
         if cosine.is_nan() || cosine.abs() >= 1.0 {
@@ -295,11 +314,11 @@ impl Ends {
         [1.0, -1.0]
             .map(|side| {
                 let direction = self.toward_center * cosine + self.sideways * (side * (1.0 - cosine * cosine).sqrt());
-                // On a plane the center of the sphere is infinitely far, and the plane is its own image.
+                // If the sphere is a plane, its center is infinitely far, and the plane is its own image.
                 if self.curvature == 0.0 {
                     Center { direction, nearness: 1.0 / reach, normal: self.toward_center }
                 } else {
-                    self.place(direction, 1.0 / reach, self.depth / (self.curvature * reach))
+                    self.center_at(direction, 1.0 / reach, self.depth / (self.curvature * reach))
                 }
             })
             .to_vec()
@@ -311,7 +330,7 @@ impl Ends {
         AnchoredInversion { anchor: self.start, direction: ray / size, nearness: center.nearness / size }
     }
 
-    /// Tangents of the planar data.
+    /// Unit tangents of the planar data.
     fn image_tangents(&self, center: &Center) -> [DVec3; 2] {
         let inversion = self.inversion(center);
         [inversion.vector(self.start, self.tangents[0]), inversion.vector(self.end, self.tangents[1])]
@@ -331,10 +350,10 @@ impl Ends {
     }
 }
 
-/// The unit normal of two unit vectors, unless they are parallel up to rounding.
+/// Unit normal of two unit vectors. Returns `None` if they are parallel up to rounding.
 fn cross_of_independent(a: DVec3, b: DVec3) -> Option<DVec3> {
     let normal = a.cross(b);
-    // Ten thousand times rounding: below it the direction of the product is noise.
+    // Ten thousand times the rounding error. Below it, the direction of the product is noise.
     if normal.length() > 1e-12 { Some(normal.normalize()) } else { None }
 }
 
@@ -343,10 +362,10 @@ mod tests {
     use super::*;
     use crate::TrigonometricCurve;
 
-    /// Figure 2 of the paper: symmetry about the middle of a helix segment makes the planar tangents parallel, and no
-    /// cubic has an inflection.
+    /// Figure 2 of the paper: by the symmetry of a helix segment about its midpoint, the planar tangents are
+    /// parallel, and the cubic does not have an inflection.
     #[test]
-    fn published_centers_make_an_inflection_of_every_part_of_a_helix() {
+    fn published_centers_fail_on_every_part_of_a_helix() {
         let helix = TrigonometricCurve::helix(1.0, 0.5, (0.0, std::f64::consts::PI));
         for (start, half_turns) in [(0.0, 0.5), (0.5, 0.5), (0.0, 0.1), (0.2, 0.7)] {
             let [start, end] = [start, start + half_turns].map(|at| helix.jet(std::f64::consts::PI * at));
@@ -357,7 +376,7 @@ mod tests {
                 .map(|tangent| libm::atan2(center.normal.dot(ends.chord.cross(tangent)), ends.chord.dot(tangent)));
             assert!((angles[0] - angles[1]).abs() < 1e-13, "parallel: {angles:?}");
             if half_turns == 0.5 {
-                // Given to nine digits.
+                // The reference value has nine digits.
                 assert!((angles[0] + 0.084_001_077_4).abs() < 5.1e-11, "{angles:?}");
             }
             assert!(ends.segment(&center).is_err());

@@ -1,11 +1,14 @@
-//! Pythagorean-hodograph cubics: cubic curves with a polynomial speed, a rational Frenet frame and a
+//! Pythagorean-hodograph cubics: cubic curves with polynomial speed, a rational Frenet frame, and a
 //! rotation-minimizing frame in closed form.
 //!
-//! Source: C. Mäurer, B. Jüttler, Rational approximation of rotation minimizing frames using Pythagorean-hodograph
-//! cubics, 1999, section 3. Symbols there: L₁, L₂, L₃ = `lengths`, θ from `cos_theta`, Ω = the angle from the Frenet
-//! frame to the rotation-minimizing one. The paper leaves the sign of ψ open; here it is that of −det(Δb₁, Δb₂, Δb₃).
-//! Equation (30) mixes a definite integral with a primitive; here the difference is taken, in a form without
-//! cancellation.
+//! Source: C. Mäurer, B. Jüttler, Rational approximation of rotation minimizing frames using
+//! Pythagorean-hodograph cubics, 1999, section 3. Symbols of the paper: L₁, L₂, L₃ are `lengths`, θ is the angle
+//! between neighboring sides of the control polygon, and Ω is the angle from the Frenet frame to the
+//! rotation-minimizing frame.
+//!
+//! Deviations: the paper does not specify the sign of ψ; this module uses that of −det(Δb₁, Δb₂, Δb₃).
+//! Equation (30) mixes a definite integral with an antiderivative; this module evaluates the difference in a
+//! form without cancellation.
 
 use glam::DVec3;
 
@@ -20,21 +23,35 @@ pub use hermite::{HermiteError, PhCubicError};
 pub use rational_rotation::RationalRotation;
 pub use spline::{PhSpline, PhSplineError};
 
-/// Height of the control polygon over its length up to which a cubic counts as straight. Larger: the constant frame of
-/// such a cubic is visibly off its normal plane. Smaller: rounding, one over the square of this times larger, decides
-/// how the Frenet frame turns.
+/// Largest ratio of height to length of the control polygon of a straight cubic. Larger: the constant frame of
+/// such a cubic visibly leaves the normal plane. Smaller: rounding, amplified by one over the square of this,
+/// determines the rotation of the Frenet frame.
 const STRAIGHT: f64 = 1e-5;
 
-/// The same ratio up to which exact frames come from double reflection, whose error is its fifth power over some
-/// hundreds. Larger: that error shows. Smaller: the rounding of the Frenet frame does.
+/// Largest such ratio for which exact frames use double reflection. Its error is the fifth power of the ratio
+/// divided by several hundred. Larger: this error becomes visible. Smaller: the rounding of the Frenet frame
+/// becomes visible.
 const NEARLY_STRAIGHT: f64 = 1e-3;
 
 /// A Pythagorean-hodograph cubic over [0, 1].
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::{Curve, PhCubic, length};
+///
+/// let [start, end] = [DVec3::ZERO, DVec3::new(1.0, 0.2, 0.1)];
+/// let cubic = PhCubic::hermite(start, end, DVec3::new(1.0, 0.5, 0.0), DVec3::new(1.0, -0.3, 0.4))?;
+/// assert!(cubic.position(1.0).distance(end) < 1e-15);
+/// // The arc length has a closed form.
+/// assert!((cubic.length() - length(&cubic)).abs() < 1e-14);
+/// # Ok::<(), isochore_curve::PhCubicError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhCubic {
     start: DVec3,
-    /// The sides of the control polygon. Kept instead of its corners, since short sides would be rounded with the
-    /// positions.
+    /// Sides of the control polygon. Stored instead of its corners, because the rounding of positions would
+    /// perturb short sides.
     sides: [DVec3; 3],
     /// Lengths of the three sides of the control polygon.
     lengths: [f64; 3],
@@ -47,14 +64,15 @@ pub struct PhCubic {
 }
 
 impl PhCubic {
-    /// The cubic with a control polygon that is known to satisfy the two conditions (17).
+    /// Creates a cubic from a control polygon that satisfies the two conditions (17).
     pub(crate) fn from_sides(start: DVec3, sides: [DVec3; 3]) -> Self {
         let [first, second, third] = sides;
         let lengths = [first.length(), second.length(), third.length()];
         let middle = second.dot(first) / lengths[0];
-        // Both angles of the polygon are θ; the cross product with the first side is the one used.
+        // Both angles of the polygon are θ. Use the one between the first two sides.
         let height = second.cross(first).length() / lengths[0];
-        // det = ±2 L₂² sin²θ √(L₁L₃ − L₂²): the root from the determinant, since the difference cancels on flat curves.
+        // det = ±2 L₂² sin²θ √(L₁L₃ − L₂²). Obtain the root from the determinant, because the difference L₁L₃ − L₂²
+        // cancels on flat curves.
         let determinant = first.dot(second.cross(third));
         let is_straight = height <= STRAIGHT * lengths.iter().sum::<f64>();
         let twist = if is_straight { 0.0 } else { -determinant / (2.0 * height * height) };
@@ -106,17 +124,17 @@ impl PhCubic {
         -6.0 * self.twist / (speed * speed)
     }
 
-    /// True for a line, straight up to 1e-5 of its length, which has no Frenet frame worth the name.
+    /// Returns true if the curve is straight up to 1e-5 of its length. Its Frenet frame is then undefined.
     pub fn is_straight(&self) -> bool {
         self.height <= STRAIGHT * self.polygon_length()
     }
 
-    /// The constant k of equation (33): 2k is the factor of the arc tangent in Ω. Zero for planar curves, below one.
+    /// Constant k of equation (33), in [0, 1): 2k is the factor of the arctangent in Ω. Zero for planar curves.
     pub fn rotation_factor(&self) -> f64 {
         if self.is_straight() { 0.0 } else { self.twist.abs() / libm::hypot(self.twist, self.height) }
     }
 
-    /// Ω(v) − Ω(0), radians: how far a rotation-minimizing frame has turned against the Frenet frame (equation 30).
+    /// Ω(v) − Ω(0), radians: rotation of a rotation-minimizing frame relative to the Frenet frame (equation 30).
     pub fn rotation_to(&self, v: f64) -> f64 {
         if self.is_straight() {
             return 0.0;
@@ -131,7 +149,7 @@ impl PhCubic {
         6.0 * self.twist / self.speed(v)
     }
 
-    /// The Frenet frame at `v`; for a straight line, which has none, a frame that does not turn.
+    /// Frenet frame at `v`. A straight line has no Frenet frame; the result is then a frame that does not rotate.
     pub fn frenet_frame(&self, v: f64) -> Frame {
         let jet = self.jet(v);
         let tangent = jet.tangent();
@@ -140,11 +158,11 @@ impl PhCubic {
         Frame::new(normal.reject_from_normalized(tangent).normalize(), tangent)
     }
 
-    /// The exact rotation-minimizing frames at ascending parameters, starting at v = 0 from the part of `reference`
-    /// normal to the tangent there.
+    /// Exact rotation-minimizing frames at ascending parameters. The reference vector at v = 0 is the component
+    /// of `reference` normal to the tangent.
     ///
     /// # Errors
-    /// [`FrameError::Reference`] where `reference` is along the first tangent.
+    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
     pub fn exact_frames(&self, parameters: &[f64], reference: DVec3) -> Result<Vec<Frame>, FrameError> {
         if self.height <= NEARLY_STRAIGHT * self.polygon_length() {
             let start = self.jet(0.0);
@@ -162,7 +180,7 @@ impl PhCubic {
         Ok(parameters.iter().map(|&v| self.frenet_frame(v).turned(angle + self.rotation_to(v))).collect())
     }
 
-    /// The two parts left and right of `v`, again of this kind.
+    /// Splits the curve at `v` into two Pythagorean-hodograph cubics.
     pub fn split(&self, v: f64) -> (Self, Self) {
         let [first, second, third] = self.sides;
         let (a, b) = (first.lerp(second, v), second.lerp(third, v));

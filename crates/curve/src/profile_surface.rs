@@ -1,10 +1,10 @@
-//! Surfaces swept by a rigid planar profile along a spine, and the quantities by which they are judged.
+//! Surfaces swept by a rigid planar cross-section along a spine, and their regularity and curvature.
 //!
-//! With rotation-minimizing frames these are profile surfaces: their parameter lines are lines of curvature, a straight
-//! profile gives a developable, and offsets are again of this kind.
+//! With rotation-minimizing frames, these are the *profile surfaces* of the paper: their parameter lines are lines
+//! of curvature, a straight cross-section gives a developable surface, and their offsets are profile surfaces.
 //!
-//! Source: Mäurer and Jüttler 1999, section 2. The paper's normal (10) and curvature (11) have opposite signs; with the
-//! normal K = −κ_u κ_v cos θ.
+//! Source: Mäurer and Jüttler 1999, section 2. Correction: the normal (10) and the curvature (11) of the paper have
+//! opposite signs. With the normal (10), K = −κ_u κ_v cos θ.
 
 use glam::{DVec2, DVec3};
 
@@ -12,9 +12,9 @@ use crate::{CurveJet, Frame};
 
 mod patch;
 
-pub use patch::{RationalPatch, RationalCrossSection, SurfaceJet};
+pub use patch::{RationalCrossSection, RationalPatch, SurfaceJet};
 
-/// Rows of points, one row a station and one column a profile point.
+/// A grid of points, with one row per station and one column per point of the cross-section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointGrid {
     /// Points row by row, model units.
@@ -26,59 +26,70 @@ pub struct PointGrid {
 }
 
 impl PointGrid {
-    /// The point in `row` and `column`.
+    /// Point in `row` and `column`.
     ///
     /// # Panics
-    /// If there is no such row or column.
+    /// If the row or column is out of range.
     pub fn point(&self, row: usize, column: usize) -> DVec3 {
-        assert!(column < self.columns, "column {column} of {}", self.columns);
+        assert!(column < self.columns, "column {column} is out of range: the grid has {} columns", self.columns);
         self.points[row * self.columns + column]
     }
 
-    /// The points of one row.
+    /// Points of one row.
     ///
     /// # Panics
-    /// If there is no such row.
+    /// If the row is out of range.
     pub fn row(&self, row: usize) -> &[DVec3] {
         &self.points[row * self.columns..(row + 1) * self.columns]
     }
 }
 
-/// Moves `profile`, given by coordinates along r and s, along `stations` of a spine.
-pub fn sweep(stations: &[(DVec3, Frame)], profile: &[DVec2]) -> PointGrid {
-    sweep_varying(stations, profile.len(), |_, column| profile[column])
+/// Sweeps `cross_section`, given by coordinates along r and s, along `stations` of a spine.
+///
+/// # Examples
+/// ```
+/// use glam::{DVec2, DVec3};
+/// use isochore_curve::{Frame, sweep};
+///
+/// let frame = Frame::new(DVec3::X, DVec3::Z);
+/// let grid = sweep(&[(DVec3::ZERO, frame), (DVec3::Z, frame)], &[DVec2::X, DVec2::Y]);
+/// assert_eq!(grid.row(1), [DVec3::new(1.0, 0.0, 1.0), DVec3::new(0.0, 1.0, 1.0)]);
+/// ```
+pub fn sweep(stations: &[(DVec3, Frame)], cross_section: &[DVec2]) -> PointGrid {
+    sweep_varying(stations, cross_section.len(), |_, column| cross_section[column])
 }
 
-/// Sweeps a profile of `columns` points that changes from station to station: `profile(station, column)` gives
-/// coordinates along r and s.
+/// Sweeps a cross-section of `columns` points that varies along the spine. `cross_section(station, column)`
+/// returns coordinates along r and s.
 pub fn sweep_varying(
     stations: &[(DVec3, Frame)],
     columns: usize,
-    profile: impl Fn(usize, usize) -> DVec2,
+    cross_section: impl Fn(usize, usize) -> DVec2,
 ) -> PointGrid {
     let points = stations
         .iter()
         .enumerate()
         .flat_map(|(row, (point, frame))| {
-            let profile = &profile;
-            (0..columns).map(move |column| *point + frame.offset(profile(row, column)))
+            let cross_section = &cross_section;
+            (0..columns).map(move |column| *point + frame.offset(cross_section(row, column)))
         })
         .collect();
     PointGrid { points, rows: stations.len(), columns }
 }
 
-/// Condition (9) as a margin: 1 − κ n · p for the point p of the profile. The profile surface is regular where it is
-/// positive, and the sweep there advances by this share of the spine's own step.
-pub fn regularity(spine: &CurveJet, frame: &Frame, profile: DVec2) -> f64 {
-    1.0 - spine.curvature_vector().dot(frame.offset(profile))
+/// Margin of condition (9): 1 − κ n · p for the point p of the cross-section. The profile surface is regular if the
+/// margin is positive. It is also the ratio of the speed of the swept point to the speed of the spine.
+pub fn regularity(spine: &CurveJet, frame: &Frame, point: DVec2) -> f64 {
+    1.0 - spine.curvature_vector().dot(frame.offset(point))
 }
 
-/// Radius within which every profile is safe on a spine: 1/κ_max over `jets`, infinite for straight spines.
+/// Radius of the largest disk in which every cross-section gives a regular surface: 1/κ_max over `jets`, infinite for
+/// a straight spine.
 pub fn safe_cross_section_radius(jets: &[CurveJet]) -> f64 {
     1.0 / jets.iter().map(CurveJet::curvature).fold(0.0, f64::max)
 }
 
-/// A point of a planar profile with its first two derivatives, coordinates along r and s.
+/// A point of a cross-section with its first two derivatives, with coordinates along r and s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrossSectionJet {
     /// Position.
@@ -90,27 +101,27 @@ pub struct CrossSectionJet {
 }
 
 impl CrossSectionJet {
-    /// Signed curvature κ_u, positive where the profile turns left (equation 11). Zero where the speed vanishes.
+    /// Signed curvature κ_u, positive for a left turn (equation 11). Zero if the speed is zero.
     pub fn curvature(&self) -> f64 {
         let speed = self.first.length();
         if speed == 0.0 { 0.0 } else { self.first.perp_dot(self.second) / (speed * speed * speed) }
     }
 
-    /// The profile's normal to its right, (c₃′, −c₂′)/|c′|, which is that of the profile surface (equation 10).
+    /// Right-hand normal (c₃′, −c₂′)/|c′|, which is also the normal of the profile surface (equation 10).
     pub fn normal(&self) -> DVec2 {
         DVec2::new(self.first.y, -self.first.x).normalize_or_zero()
     }
 }
 
-/// Gaussian curvature of the profile surface, K = −κ_u κ_v cos θ (equation 13 with the sign of the normal (10)). None
-/// where the surface is singular.
-pub fn profile_surface_curvature(spine: &CurveJet, frame: &Frame, profile: &CrossSectionJet) -> Option<f64> {
-    let margin = regularity(spine, frame, profile.position);
+/// Gaussian curvature of the profile surface, K = −κ_u κ_v cos θ (equation 13 with the sign of the normal (10)).
+/// Returns `None` if the surface is singular.
+pub fn profile_surface_curvature(spine: &CurveJet, frame: &Frame, cross_section: &CrossSectionJet) -> Option<f64> {
+    let margin = regularity(spine, frame, cross_section.position);
     if margin == 0.0 {
         return None;
     }
-    // κ_v cos θ is the curvature vector of the line u = const along the surface normal; that line runs parallel to the
-    // spine, its speed scaled by the margin.
-    let across = spine.curvature_vector().dot(frame.offset(profile.normal())) / margin;
-    Some(-profile.curvature() * across)
+    // κ_v cos θ is the component of the curvature vector of the line u = const along the surface normal. The tangent of
+    // that line is parallel to the tangent of the spine, and its speed is scaled by the margin.
+    let across = spine.curvature_vector().dot(frame.offset(cross_section.normal())) / margin;
+    Some(-cross_section.curvature() * across)
 }

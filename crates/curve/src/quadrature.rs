@@ -9,11 +9,12 @@ const NODES: [(f64, f64); 5] = [
     (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
 ];
 
-/// Relative agreement asked of one panel and its two halves. Larger: exact references lose digits. Smaller: rounding
-/// keeps the recursion going to its full depth for nothing.
+/// Largest relative difference between a panel and the sum of its halves. Larger: reference values lose digits.
+/// Smaller: rounding errors force the recursion to its full depth.
 const TOLERANCE: f64 = 1e-14;
 
-/// Halvings of a panel at most: the narrowest panel is a 2⁻¹⁸th of the first. More only costs time at jumps.
+/// Largest number of halvings of a panel. Larger: only more time at discontinuities. Smaller: narrow peaks are
+/// not resolved.
 const DEPTH: u32 = 18;
 
 /// Integral of `function` over [a, b] by the ten-point rule: exact for polynomials of degree 19.
@@ -40,10 +41,10 @@ pub(crate) fn gauss_points(a: f64, b: f64, panels: usize) -> Vec<(f64, f64)> {
     points
 }
 
-/// Integral of `function` over [a, b], panels halved until they agree with their halves to rounding.
+/// Integral of `function` over [a, b]. Panels are halved until they agree with the sum of their halves.
 ///
-/// `scale` is the size of the whole integral that the error is measured against; panels that contribute less than its
-/// rounding are not refined.
+/// `scale` is the size of the whole integral, to which the error is relative. Panels that contribute less than
+/// its rounding error are not refined.
 pub(crate) fn integrate(function: &mut impl FnMut(f64) -> f64, a: f64, b: f64, scale: f64) -> f64 {
     let whole = gauss(function, a, b);
     refine(function, a, b, whole, scale, DEPTH)
@@ -67,9 +68,9 @@ mod tests {
     #[test]
     fn ten_points_are_exact_to_degree_nineteen() {
         let exact = 1.0 / 20.0;
-        assert!((gauss(&mut |x| x.powi(19), 0.0, 1.0) - exact).abs() < 2e-16, "degree 19 is within the rule");
+        assert!((gauss(&mut |x| x.powi(19), 0.0, 1.0) - exact).abs() < 2e-16, "degree 19 is exact");
         let error = (gauss(&mut |x| x.powi(20), 0.0, 1.0) - 1.0 / 21.0).abs();
-        assert!(error > 1e-13, "degree 20 is not, and its error is 1e-12, above rounding: {error}");
+        assert!(error > 1e-13, "degree 20 is not exact; its error, 1e-12, is above rounding: {error}");
     }
 
     #[test]
@@ -78,11 +79,11 @@ mod tests {
         let epsilon = 1e-4;
         let value = integrate(&mut |x| epsilon / (epsilon * epsilon + x * x), -1.0, 1.0, 1.0);
         let exact = 2.0 * libm::atan(1.0 / epsilon);
-        assert!((value - exact).abs() < 1e-12, "{value} against {exact}");
+        assert!((value - exact).abs() < 1e-12, "{value}, expected {exact}");
     }
 
     #[test]
-    fn composite_points_integrate_like_the_rule() {
+    fn composite_points_integrate_cubics_exactly() {
         let sum: f64 = gauss_points(0.0, 2.0, 3).iter().map(|&(x, w)| w * x * x * x).sum();
         assert!((sum - 4.0).abs() < 4e-15);
     }

@@ -1,17 +1,18 @@
-//! Frames by the classical Runge–Kutta method on r′ = −(r · t′) t, kept as a rival for comparison.
+//! Frames by the classical Runge–Kutta method applied to r′ = −(r · t′) t, for comparison.
 
 use glam::DVec3;
 
 use crate::frame::{FrameError, orthogonal_reference};
 use crate::{Curve, Frame};
 
-/// Carries a frame along `curve` from parameter to parameter, one Runge–Kutta step each.
+/// Computes frames along `curve` at the given parameters, with one Runge–Kutta step between neighbors.
 ///
-/// The steps themselves neither project nor normalize r, as in Wang et al. 2008; the frames returned do. The form
-/// (t × t′) × r, equation (6), gives other numbers, since the two agree only as long as r is normal to t.
+/// As in Wang et al. 2008, the integrated r is neither projected nor normalized. The returned frames are
+/// orthonormal. The form (t × t′) × r of equation (6) gives different numbers, because the two forms agree only
+/// while r is normal to t.
 ///
 /// # Errors
-/// [`FrameError::Reference`] where `reference` is along the first tangent.
+/// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
 pub fn runge_kutta_frames(curve: &impl Curve, parameters: &[f64], reference: DVec3) -> Result<Vec<Frame>, FrameError> {
     let rate = |parameter: f64, r: DVec3| {
         let jet = curve.jet(parameter);

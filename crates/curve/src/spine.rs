@@ -6,14 +6,28 @@ use crate::spline::COORDINATE_LIMIT;
 use crate::tangents::{TangentError, TangentRule, estimate_tangents};
 use crate::{Curve, CurveJet};
 
-/// A closed spine whose closing chord is this many times longer than its longest other chord is refused as open data.
-/// Larger: the gap of an open curve passes as a segment, and the frame jumps across it. Smaller: coarse but closed data
-/// with one long side are refused.
+/// Largest ratio of the closing chord of a closed spine to its longest other chord. Larger: the gap of an
+/// open curve is accepted as a segment, and the frame jumps across it. Smaller: coarse closed data with
+/// one long side are rejected.
 const CLOSING_GAP: f64 = 4.0;
 
-/// Samples of a curve that are fit to carry frames: at least two finite points with a unit tangent each.
+/// A sampled curve: at least two finite points with a unit tangent each.
 ///
-/// A closed spine has one segment from its last point back to its first, which is not repeated.
+/// A closed spine has one more segment, from its last point to its first. The first point is not
+/// repeated.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::{Spine, TangentRule};
+///
+/// let points = vec![DVec3::ZERO, DVec3::X, DVec3::new(2.0, 1.0, 0.0), DVec3::new(2.0, 2.0, 0.0)];
+/// let spine = Spine::from_points(points, false, TangentRule::Automatic)?;
+/// assert_eq!(spine.segments(), 3);
+/// assert!((spine.tangent(1).length() - 1.0).abs() < 1e-15);
+/// assert_eq!(spine.chords()[0], 1.0);
+/// # Ok::<(), isochore_curve::SpineError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spine {
     points: Vec<DVec3>,
@@ -21,69 +35,71 @@ pub struct Spine {
     closed: bool,
 }
 
-/// Why samples are no [`Spine`]. Indices count from zero.
+/// Errors when constructing a [`Spine`]. Indices count from zero.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SpineError {
     /// Too few points.
     #[error("a spine needs at least {needed} points, not {count}")]
     TooFewPoints {
-        /// Points given.
+        /// Number of points.
         count: usize,
-        /// Two for an open spine, three for a closed one.
+        /// Required number: two for an open spine, three for a closed one.
         needed: usize,
     },
-    /// Points and tangents are not one to one.
-    #[error("{points} points come with {tangents} tangents")]
+    /// The numbers of points and tangents differ.
+    #[error("{points} points with {tangents} tangents; give one tangent per point")]
     TangentCount {
-        /// Points given.
+        /// Number of points.
         points: usize,
-        /// Tangents given.
+        /// Number of tangents.
         tangents: usize,
     },
     /// A coordinate is NaN, infinite or beyond 1e50.
-    #[error("point {index} has a coordinate that is not a finite number of ordinary size")]
+    #[error("point {index} has a coordinate that is NaN, infinite or beyond 1e50")]
     PointNotFinite {
         /// The point.
         index: usize,
     },
     /// A tangent is NaN, infinite or beyond 1e50.
-    #[error("tangent {index} has a coordinate that is not a finite number of ordinary size")]
+    #[error("tangent {index} has a coordinate that is NaN, infinite or beyond 1e50")]
     TangentNotFinite {
         /// The tangent.
         index: usize,
     },
-    /// A given tangent is zero.
-    #[error("tangent {index} is zero: the curve has a cusp or stands still there")]
+    /// A tangent is zero.
+    #[error("tangent {index} is zero: the curve has a cusp or a constant part")]
     ZeroTangent {
         /// The tangent.
         index: usize,
     },
-    /// The last point of a closed spine is its first.
-    #[error("point {index} repeats the first point; leave it out, a closed spine returns by itself")]
+    /// The last point of a closed spine equals its first.
+    #[error("point {index} repeats the first point; remove it, because a closed spine ends at its first point")]
     ClosingPointRepeated {
         /// The last point.
         index: usize,
     },
-    /// The ends of points that should close are far apart.
-    #[error("the ends are {gap} apart while neighbors are at most {longest}: these points do not close")]
+    /// The first and last points of a closed spine are far apart.
+    #[error(
+        "the points do not close: the last is {gap} from the first, and other neighbors are at most {longest} apart"
+    )]
     NotClosed {
         /// Distance from the last point to the first.
         gap: f64,
-        /// Longest distance of other neighbors.
+        /// Longest distance between other neighbors.
         longest: f64,
     },
-    /// Points alone do not determine a tangent.
+    /// The points do not determine a tangent.
     #[error(transparent)]
     Tangent(#[from] TangentError),
 }
 
 impl Spine {
-    /// The spine with given points and tangents, which may have any length.
+    /// Creates a spine from points and tangents. Tangents of any length are normalized.
     ///
-    /// Equal neighboring points are allowed: frames turn with the tangents there.
+    /// Equal neighboring points are allowed: between them, frames rotate with the tangents.
     ///
     /// # Errors
-    /// Too few points, unequal counts, coordinates that are not finite, a zero tangent, or points that do not close.
+    /// Every [`SpineError`] except [`SpineError::Tangent`].
     pub fn new(points: Vec<DVec3>, tangents: Vec<DVec3>, closed: bool) -> Result<Self, SpineError> {
         check_points(&points, closed)?;
         if points.len() != tangents.len() {
@@ -100,27 +116,39 @@ impl Spine {
         Ok(Self { points, tangents, closed })
     }
 
-    /// The spine with given points and tangents estimated from them by `rule`.
+    /// Creates a spine from points, with tangents estimated by `rule`.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and a tangent that the points do not determine.
+    /// As [`new`](Self::new), and [`SpineError::Tangent`] if the points do not determine a tangent.
     pub fn from_points(points: Vec<DVec3>, closed: bool, rule: TangentRule<'_>) -> Result<Self, SpineError> {
         check_points(&points, closed)?;
         let tangents = estimate_tangents(&points, closed, rule)?;
         Ok(Self { points, tangents, closed })
     }
 
-    /// `segments` equal steps of the parameter along `curve`, with its tangents. Closed where the curve is.
+    /// Samples `curve` at `segments` equal steps of its parameter, with its tangents. The spine is closed
+    /// if the curve is.
     ///
     /// # Errors
-    /// As [`new`](Self::new); a cusp among the samples is a zero tangent.
+    /// As [`new`](Self::new). A cusp at a sample has a zero tangent.
+    ///
+    /// # Examples
+    /// ```
+    /// use isochore_curve::{Spine, TrigonometricCurve};
+    ///
+    /// let knot = Spine::sample(&TrigonometricCurve::torus_knot(), 64)?;
+    /// assert!(knot.is_closed());
+    /// assert_eq!((knot.points().len(), knot.segments()), (64, 64));
+    /// assert_eq!(knot.point(64), knot.point(0));
+    /// # Ok::<(), isochore_curve::SpineError>(())
+    /// ```
     pub fn sample(curve: &impl Curve, segments: usize) -> Result<Self, SpineError> {
         let parameters = uniform_parameters(curve, segments);
         let samples = if curve.is_closed() { segments } else { segments + 1 };
         Self::from_jets(parameters[..samples].iter().map(|&parameter| curve.jet(parameter)), curve.is_closed())
     }
 
-    /// The spine with the points and tangents of `jets`.
+    /// Creates a spine from the positions and first derivatives of `jets`.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -139,17 +167,17 @@ impl Spine {
         &self.tangents
     }
 
-    /// True where the last point is followed by the first.
+    /// Returns true if the last point is followed by the first.
     pub fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// Number of segments: as many as points on a closed spine, one fewer on an open one.
+    /// Number of segments: the number of points on a closed spine, one less on an open one.
     pub fn segments(&self) -> usize {
         if self.closed { self.points.len() } else { self.points.len() - 1 }
     }
 
-    /// Point at a station: station `segments()` of a closed spine is point 0 again.
+    /// Point at a station. Station `segments()` of a closed spine is point 0.
     ///
     /// # Panics
     /// If `station` is greater than [`segments`](Self::segments).
@@ -157,7 +185,7 @@ impl Spine {
         self.points[self.index(station)]
     }
 
-    /// Unit tangent at a station, counted as in [`point`](Self::point).
+    /// Unit tangent at a station, numbered as in [`point`](Self::point).
     ///
     /// # Panics
     /// If `station` is greater than [`segments`](Self::segments).
@@ -169,8 +197,8 @@ impl Spine {
         if self.closed && station == self.points.len() { 0 } else { station }
     }
 
-    /// The same spine run backwards: stations in reverse order and tangents reversed. A closed spine keeps its first
-    /// point.
+    /// Reverses the spine: the order of the stations and the direction of the tangents. A closed spine keeps
+    /// its first point.
     pub fn reversed(&self) -> Self {
         let mut points = self.points.clone();
         let mut tangents: Vec<DVec3> = self.tangents.iter().map(|&tangent| -tangent).collect();
@@ -198,9 +226,9 @@ impl Spine {
             .collect()
     }
 
-    /// The discrete Frenet normal at the first point, which is where frames start by default: the direction in which
-    /// the tangent turns, by a difference stencil over the first tangents. Where the tangent does not turn, a vector
-    /// perpendicular to it in its plane with the axis of its smallest component.
+    /// Default reference vector for the first frame: the discrete Frenet normal at the first point, from a
+    /// difference stencil over the first tangents. If the tangent does not turn, the result is
+    /// [`perpendicular`] to it.
     pub fn default_reference(&self) -> DVec3 {
         let count = self.tangents.len();
         let derivative = if self.closed && count >= 5 {
@@ -213,12 +241,13 @@ impl Spine {
             self.tangents[1] - self.tangents[0]
         };
         let across = derivative.reject_from_normalized(self.tangents[0]);
-        // Twelve times a turn of 1e-10 radians: below it the direction is rounding of the input.
+        // The stencils return twelve times the turn per step, so this is a turn of about 1e-10 radians. Below
+        // it, the direction is rounding error of the input.
         if across.length() > 1e-9 { across.normalize() } else { perpendicular(self.tangents[0]) }
     }
 }
 
-/// `segments + 1` equally spaced parameters from the first to the last of `curve`.
+/// `segments + 1` equally spaced parameters over the domain of `curve`, ends included.
 pub fn uniform_parameters(curve: &impl Curve, segments: usize) -> Vec<f64> {
     let (first, last) = curve.domain();
     (0..=segments)
@@ -226,7 +255,8 @@ pub fn uniform_parameters(curve: &impl Curve, segments: usize) -> Vec<f64> {
         .collect()
 }
 
-/// A unit vector perpendicular to the unit vector `tangent`, in its plane with the axis of its smallest component.
+/// A unit vector perpendicular to the unit vector `tangent`, in the plane of `tangent` and the coordinate
+/// axis of its smallest component.
 pub fn perpendicular(tangent: DVec3) -> DVec3 {
     let size = tangent.abs();
     let axis = if size.x <= size.y && size.x <= size.z {
@@ -271,26 +301,26 @@ mod tests {
     use crate::{Bezier, TrigonometricCurve};
 
     #[test]
-    fn bad_samples_are_named() {
-        let make = |points: &[DVec3], tangents: &[DVec3], closed| {
+    fn errors_name_the_invalid_sample() {
+        let error = |points: &[DVec3], tangents: &[DVec3], closed| {
             Spine::new(points.to_vec(), tangents.to_vec(), closed).unwrap_err()
         };
-        assert_eq!(make(&[DVec3::X], &[DVec3::X], false), SpineError::TooFewPoints { count: 1, needed: 2 });
-        assert_eq!(make(&[DVec3::X; 2], &[DVec3::X], false), SpineError::TangentCount { points: 2, tangents: 1 });
+        assert_eq!(error(&[DVec3::X], &[DVec3::X], false), SpineError::TooFewPoints { count: 1, needed: 2 });
+        assert_eq!(error(&[DVec3::X; 2], &[DVec3::X], false), SpineError::TangentCount { points: 2, tangents: 1 });
         let line = [DVec3::ZERO, DVec3::X, DVec3::X * 2.0, DVec3::X * 9.0];
-        assert_eq!(make(&[DVec3::X, DVec3::NAN], &line[..2], false), SpineError::PointNotFinite { index: 1 });
+        assert_eq!(error(&[DVec3::X, DVec3::NAN], &line[..2], false), SpineError::PointNotFinite { index: 1 });
         let infinite = [DVec3::X, DVec3::splat(f64::INFINITY)];
-        assert_eq!(make(&line[..2], &infinite, false), SpineError::TangentNotFinite { index: 1 });
-        assert_eq!(make(&line[..2], &[DVec3::X, DVec3::ZERO], false), SpineError::ZeroTangent { index: 1 });
+        assert_eq!(error(&line[..2], &infinite, false), SpineError::TangentNotFinite { index: 1 });
+        assert_eq!(error(&line[..2], &[DVec3::X, DVec3::ZERO], false), SpineError::ZeroTangent { index: 1 });
         let repeated = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::X];
-        assert_eq!(make(&repeated, &[DVec3::X; 4], true), SpineError::ClosingPointRepeated { index: 3 });
+        assert_eq!(error(&repeated, &[DVec3::X; 4], true), SpineError::ClosingPointRepeated { index: 3 });
         let open: Vec<DVec3> = (0..9).map(|i| DVec3::X * f64::from(i)).collect();
-        assert_eq!(make(&open, &[DVec3::X; 9], true), SpineError::NotClosed { gap: 8.0, longest: 1.0 });
+        assert_eq!(error(&open, &[DVec3::X; 9], true), SpineError::NotClosed { gap: 8.0, longest: 1.0 });
     }
 
     #[test]
-    fn a_cusp_of_a_formula_is_a_zero_tangent() {
-        // t³, t²: the tangent vanishes in the middle of [−1, 1].
+    fn a_cusp_has_a_zero_tangent() {
+        // (t³, t²): the tangent vanishes at the midpoint of [−1, 1].
         let cusp = Bezier::new(
             [(-1.0, 1.0), (1.0, -1.0 / 3.0), (-1.0, -1.0 / 3.0), (1.0, 1.0)]
                 .map(|(x, y)| DVec3::new(x, y, 0.0))
@@ -300,8 +330,8 @@ mod tests {
     }
 
     #[test]
-    fn default_reference_is_the_frenet_normal_where_there_is_one() {
-        // One-sided differences of fourth order: error h⁴/5 times the fifth derivative, h = 0.06, here 8 · 1e-5.
+    fn default_reference_is_the_frenet_normal_of_a_curved_spine() {
+        // One-sided differences of fourth order: the error is h⁴/5 times the fifth derivative, with h = 0.06.
         let helix = TrigonometricCurve::helix(1.0, 0.5, (0.0, 6.0));
         let reference = Spine::sample(&helix, 100).unwrap().default_reference();
         assert!((reference - helix.jet(0.0).normal().unwrap()).length() < 2e-5);

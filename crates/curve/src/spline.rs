@@ -1,82 +1,96 @@
-//! The C² cubic spline that passes through given points.
+//! The C² cubic spline through given points.
 
 use glam::DVec3;
 
 use crate::{Curve, CurveJet};
 
-/// How the parameter grows from point to point of a [`CubicSpline`].
+/// Parameter steps between the points of a [`CubicSpline`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Parametrization {
-    /// By the square root of the chord: no loops or cusps between unevenly spaced points. The usual choice.
+    /// Square root of the chord: avoids loops and cusps between unevenly spaced points. The usual choice.
     #[default]
     Centripetal,
-    /// By the chord: closest to arc length, best where the points are dense.
+    /// The chord: closest to arc length, and most accurate for dense points.
     ChordLength,
 }
 
-/// What holds at the two ends of an open [`CubicSpline`].
+/// Condition at the ends of an open [`CubicSpline`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum EndCondition {
-    /// The second derivative vanishes: the calmest shape, an error of second order near the ends.
+    /// The second derivative is zero: the least bending, with an error of second order near the ends.
     #[default]
     Natural,
-    /// The first two pieces are one cubic, as are the last two: fourth order up to the ends, for dense samples of a
-    /// smooth curve. Three points give a parabola, two a line.
+    /// The first two pieces are one cubic, and so are the last two: fourth order up to the ends, for dense
+    /// samples of a smooth curve. Three points give a parabola, two give a line.
     NotAKnot,
 }
 
-/// Why points have no [`CubicSpline`].
+/// Errors when constructing a [`CubicSpline`].
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SplineError {
     /// Too few points.
     #[error("a spline needs at least {needed} points, not {count}")]
     TooFewPoints {
-        /// Points given.
+        /// Number of points.
         count: usize,
-        /// Two for an open spline, three for a closed one.
+        /// Required number: two for an open spline, three for a closed one.
         needed: usize,
     },
     /// A coordinate is NaN, infinite or beyond 1e50.
-    #[error("point {index} has a coordinate that is not a finite number of ordinary size")]
+    #[error("point {index} has a coordinate that is NaN, infinite or beyond 1e50")]
     NotFinite {
         /// The point, counted from zero.
         index: usize,
     },
-    /// Two neighbors coincide; on a closed spline the last and the first point are neighbors.
-    #[error("points {index} and {next} coincide; remove one")]
+    /// Two neighbors coincide. On a closed spline, the last and first points are neighbors.
+    #[error("points {index} and {next} coincide; remove one of them")]
     RepeatedPoint {
         /// The first of the two, counted from zero.
         index: usize,
         /// The other.
         next: usize,
     },
-    /// Given parameters that are no ascending list, one for each point.
-    #[error("parameter {index} is missing, not finite, or not above the one before it")]
+    /// The parameters are not an ascending list with one parameter per point.
+    #[error("parameter {index} is missing, not finite, or not greater than the previous one")]
     Parameter {
         /// The parameter, counted from zero.
         index: usize,
     },
 }
 
-/// Coordinates beyond this are refused. Larger: sixth powers of lengths, as in the torsion, overflow. Smaller: nothing
-/// real is lost until about 1e30.
+/// Largest coordinate. Larger: sixth powers of lengths, as in the torsion, overflow. Smaller: no realistic
+/// data are rejected down to about 1e30.
 pub(crate) const COORDINATE_LIMIT: f64 = 1e50;
 
 /// A cubic spline with continuous second derivative through given points, open or closed.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_curve::{CubicSpline, Curve, Parametrization};
+///
+/// let square = [DVec3::X, DVec3::Y, -DVec3::X, -DVec3::Y];
+/// let spline = CubicSpline::closed(&square, Parametrization::Centripetal)?;
+/// assert!(spline.is_closed());
+/// assert!(spline.position(spline.knots()[2]).distance(-DVec3::X) < 1e-15);
+/// # Ok::<(), isochore_curve::SplineError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CubicSpline {
-    /// Parameters of the points, and on a closed spline of the first point once more.
+    /// Parameters of the points. A closed spline has one more, at which it returns to the first point.
     knots: Vec<f64>,
-    /// Coefficients of 1, w, w², w³ by piece, w = parameter − first knot of the piece.
+    /// Coefficients of 1, w, w², w³ of each piece, with w = parameter − first knot of the piece.
     pieces: Vec<[DVec3; 4]>,
     closed: bool,
 }
 
 impl CubicSpline {
-    /// The open spline through `points`.
+    /// Creates the open spline through `points`.
     ///
     /// # Errors
-    /// Fewer than two points, a coordinate that is not finite, or two equal neighbors.
+    /// - [`SplineError::TooFewPoints`] if there are fewer than two points.
+    /// - [`SplineError::NotFinite`] if a coordinate is NaN, infinite or beyond 1e50.
+    /// - [`SplineError::RepeatedPoint`] if two neighbors are equal.
     pub fn open(
         points: &[DVec3],
         parametrization: Parametrization,
@@ -86,14 +100,16 @@ impl CubicSpline {
         Ok(Self::open_with(points, &spacings, end_condition))
     }
 
-    /// The open spline that is at each of `points` at the parameter given with it; the first counts as zero. Neighbors may
-    /// coincide.
+    /// Creates the open spline that passes through each of `points` at the given parameter. The domain is
+    /// shifted to start at zero. Neighbors can coincide.
     ///
     /// Splines with the same parameters depend linearly on their points.
     ///
     /// # Errors
-    /// Fewer than two points, a coordinate that is not finite, or a [parameter](SplineError::Parameter) that is missing, is
-    /// not finite, or does not ascend.
+    /// - [`SplineError::TooFewPoints`] if there are fewer than two points.
+    /// - [`SplineError::NotFinite`] if a coordinate is NaN, infinite or beyond 1e50.
+    /// - [`SplineError::Parameter`] if a parameter is missing, not finite, or not greater than the previous
+    ///   one.
     pub fn open_at(points: &[DVec3], parameters: &[f64], end_condition: EndCondition) -> Result<Self, SplineError> {
         check_points(points, 2)?;
         let ascends = |index: usize| {
@@ -109,8 +125,8 @@ impl CubicSpline {
     fn open_with(points: &[DVec3], spacings: &[f64], end_condition: EndCondition) -> Self {
         let count = points.len();
         let slopes: Vec<DVec3> = (0..count - 1).map(|i| (points[i + 1] - points[i]) / spacings[i]).collect();
-        // Second derivatives at the points; rows 1 … count − 2 of the system are the continuity of the first
-        // derivative.
+        // The unknowns are the second derivatives at the points. Rows 1 … count − 2 of the system express the
+        // continuity of the first derivative.
         let mut seconds = vec![DVec3::ZERO; count];
         let inner = count - 2;
         if inner > 0 {
@@ -125,9 +141,11 @@ impl CubicSpline {
             }
             let not_a_knot = end_condition == EndCondition::NotAKnot;
             if not_a_knot && inner == 1 {
-                // One parabola: all second derivatives are equal.
+                // The spline is a parabola: all second derivatives are equal.
                 diagonal[0] += spacings[0] + spacings[1];
             } else if not_a_knot {
+                // The third derivative is continuous at the second and the second-to-last point. This gives the
+                // second derivatives at the ends, which are eliminated from the first and last rows.
                 let (first, second) = (spacings[0], spacings[1]);
                 diagonal[0] += first * (first + second) / second;
                 upper[0] -= first * first / second;
@@ -149,10 +167,12 @@ impl CubicSpline {
         Self::from_seconds(points, spacings, &slopes, &seconds, false)
     }
 
-    /// The closed spline through `points`; the last point is not a copy of the first.
+    /// Creates the closed spline through `points`. Do not repeat the first point at the end.
     ///
     /// # Errors
-    /// Fewer than three points, a coordinate that is not finite, or two equal neighbors.
+    /// - [`SplineError::TooFewPoints`] if there are fewer than three points.
+    /// - [`SplineError::NotFinite`] if a coordinate is NaN, infinite or beyond 1e50.
+    /// - [`SplineError::RepeatedPoint`] if two neighbors are equal.
     pub fn closed(points: &[DVec3], parametrization: Parametrization) -> Result<Self, SplineError> {
         let spacings = spacings(points, parametrization, true)?;
         let count = points.len();
@@ -177,12 +197,13 @@ impl CubicSpline {
         Self { knots, pieces, closed }
     }
 
-    /// Parameters of the points, ascending from zero; on a closed spline the first point comes again at the end.
+    /// Ascending parameters of the points, starting at zero. A closed spline has one more, at which it returns to
+    /// the first point.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
 
-    /// Bézier points of each piece: the piece lies in their convex hull.
+    /// Bézier control points of each piece. Their convex hull contains the piece.
     pub fn control_points(&self) -> impl Iterator<Item = [DVec3; 4]> + '_ {
         self.knots.windows(2).zip(&self.pieces).map(|(knots, [a, b, c, d])| {
             let w = knots[1] - knots[0];
@@ -191,18 +212,19 @@ impl CubicSpline {
         })
     }
 
-    /// Each point moved to that of `other` at the same parameter by `share` of the way. Where both splines go through points
-    /// at the same parameters, this is the spline through the points between.
+    /// Interpolates linearly between this spline and `other` at the same parameters: `fraction` 0 gives this
+    /// spline, 1 gives `other`. The result is the spline through the interpolated points.
     ///
     /// # Panics
-    /// If the parameters of the two are not the same.
-    pub fn blend(&self, other: &Self, share: f64) -> Self {
-        assert!(self.knots == other.knots && self.closed == other.closed, "splines with the same parameters");
-        let blend = |(a, b): (&[DVec3; 4], &[DVec3; 4])| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share);
+    /// If the knots differ, or if only one spline is closed.
+    pub fn blend(&self, other: &Self, fraction: f64) -> Self {
+        assert!(self.knots == other.knots && self.closed == other.closed, "the splines must have the same knots");
+        let blend = |(a, b): (&[DVec3; 4], &[DVec3; 4])| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * fraction);
         Self { pieces: self.pieces.iter().zip(&other.pieces).map(blend).collect(), ..self.clone() }
     }
 
-    /// Piece and local parameter of a parameter, which is clamped (open) or wrapped (closed) into the domain.
+    /// Piece and local parameter of a parameter. The parameter is clamped (open) or wrapped (closed) into the
+    /// domain.
     fn locate(&self, parameter: f64) -> (usize, f64) {
         let end = self.knots[self.pieces.len()];
         let parameter = if !self.closed {
@@ -267,14 +289,15 @@ fn check_points(points: &[DVec3], needed: usize) -> Result<(), SplineError> {
     if count < needed {
         return Err(SplineError::TooFewPoints { count, needed });
     }
-    // A comparison that is false for NaN.
+    // The comparison is false for NaN.
     match points.iter().position(|point| !(point.abs().max_element() <= COORDINATE_LIMIT && point.is_finite())) {
         Some(index) => Err(SplineError::NotFinite { index }),
         None => Ok(()),
     }
 }
 
-/// Solves a tridiagonal system in place by elimination without pivoting, which is stable for these dominant diagonals.
+/// Solves a tridiagonal system in place by elimination without pivoting. This is stable because the matrix is
+/// diagonally dominant.
 fn solve_tridiagonal(lower: &[f64], diagonal: &[f64], upper: &[f64], right: &mut [DVec3]) {
     let count = diagonal.len();
     let mut pivots = diagonal.to_vec();
@@ -291,7 +314,8 @@ fn solve_tridiagonal(lower: &[f64], diagonal: &[f64], upper: &[f64], right: &mut
     }
 }
 
-/// Second derivatives of the closed spline: a cyclic tridiagonal system, by the Sherman–Morrison formula.
+/// Second derivatives of the closed spline. Solves a cyclic tridiagonal system with the Sherman–Morrison
+/// formula.
 fn solve_cyclic(spacings: &[f64], slopes: &[DVec3]) -> Vec<DVec3> {
     let count = spacings.len();
     let before = |i: usize| (i + count - 1) % count;
@@ -299,7 +323,8 @@ fn solve_cyclic(spacings: &[f64], slopes: &[DVec3]) -> Vec<DVec3> {
     let upper: Vec<f64> = spacings.to_vec();
     let mut diagonal: Vec<f64> = (0..count).map(|i| 2.0 * (spacings[before(i)] + spacings[i])).collect();
     let mut right: Vec<DVec3> = (0..count).map(|i| 6.0 * (slopes[i] - slopes[before(i)])).collect();
-    // The corners are `corner` twice: last row first column, and first row last column.
+    // Both corner entries of the matrix equal `corner`. Write the matrix as tridiagonal + u vᵀ with
+    // u = (gamma, 0, …, corner) and v = (1, 0, …, corner / gamma), which changes two diagonal entries.
     let corner = spacings[count - 1];
     let gamma = -diagonal[0];
     diagonal[0] -= gamma;
@@ -342,7 +367,7 @@ mod tests {
                 if i > 0 && (spline.is_closed() || i + 1 < points.len()) {
                     let step = 1e-9;
                     let (before, after) = (spline.jet(knot - step), spline.jet(knot + step));
-                    // The jump is the third derivative times 2e-9; its size here is below 10.
+                    // The difference is the third derivative times 2e-9, and the third derivative is below 10.
                     assert!((before.first - after.first).length() < 1e-7);
                     assert!((before.second - after.second).length() < 1e-7);
                 }
@@ -422,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn pieces_lie_in_the_hulls_of_their_control_points() {
+    fn control_points_reproduce_their_pieces() {
         let (_, points) = helix_points(5);
         let spline = CubicSpline::open(&points, Parametrization::Centripetal, EndCondition::Natural).unwrap();
         for (piece, [a, b, c, d]) in spline.control_points().enumerate() {
@@ -437,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_parameters_are_named() {
+    fn errors_name_the_invalid_parameter() {
         let points = [DVec3::X, DVec3::X, DVec3::Y];
         let at = |parameters: &[f64]| CubicSpline::open_at(&points, parameters, EndCondition::Natural);
         assert!(at(&[0.0, 1.0, 2.0]).is_ok());
@@ -447,14 +472,16 @@ mod tests {
     }
 
     #[test]
-    fn bad_points_are_named() {
-        let make = |points: &[DVec3]| CubicSpline::open(points, Parametrization::default(), EndCondition::default());
-        assert_eq!(make(&[DVec3::X]).unwrap_err(), SplineError::TooFewPoints { count: 1, needed: 2 });
-        assert_eq!(make(&[]).unwrap_err(), SplineError::TooFewPoints { count: 0, needed: 2 });
-        assert_eq!(make(&[DVec3::X, DVec3::NAN]).unwrap_err(), SplineError::NotFinite { index: 1 });
-        assert_eq!(make(&[DVec3::X, DVec3::splat(1e200)]).unwrap_err(), SplineError::NotFinite { index: 1 });
+    fn errors_name_the_invalid_point() {
+        let error = |points: &[DVec3]| {
+            CubicSpline::open(points, Parametrization::default(), EndCondition::default()).unwrap_err()
+        };
+        assert_eq!(error(&[DVec3::X]), SplineError::TooFewPoints { count: 1, needed: 2 });
+        assert_eq!(error(&[]), SplineError::TooFewPoints { count: 0, needed: 2 });
+        assert_eq!(error(&[DVec3::X, DVec3::NAN]), SplineError::NotFinite { index: 1 });
+        assert_eq!(error(&[DVec3::X, DVec3::splat(1e200)]), SplineError::NotFinite { index: 1 });
         let repeated = [DVec3::X, DVec3::Y, DVec3::Y];
-        assert_eq!(make(&repeated).unwrap_err(), SplineError::RepeatedPoint { index: 1, next: 2 });
+        assert_eq!(error(&repeated), SplineError::RepeatedPoint { index: 1, next: 2 });
         let ends = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::X];
         assert_eq!(
             CubicSpline::closed(&ends, Parametrization::default()).unwrap_err(),

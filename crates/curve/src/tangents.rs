@@ -1,65 +1,67 @@
-//! Tangents estimated from points alone.
+//! Estimation of tangents from points.
 //!
-//! Source: Wang et al. 2008, section 6.1, and Zheng's thesis, section 7.1. The direction error of the five-point
-//! stencils is of fourth order, not fifth as printed there. The weights of the circle tangent printed in the thesis
-//! give the bisector of the two chords; those here give the tangent of the circle.
+//! Source: Wang et al. 2008, section 6.1, and Zheng's thesis, section 7.1. Corrections: the direction error
+//! of the five-point stencils is of fourth order, not of fifth order as printed. The circle weights printed
+//! in the thesis give the bisector of the two chords; the weights in this file give the tangent of the
+//! circle.
 
 use glam::DVec3;
 
-/// How [`Spine::from_points`](crate::Spine::from_points) estimates tangents.
+/// Rule by which [`Spine::from_points`](crate::Spine::from_points) estimates tangents.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum TangentRule<'a> {
-    /// [`Uniform`](Self::Uniform) where the spacing of the points is as smooth as that of samples at equal steps of a
-    /// smooth parameter, [`ArcLength`](Self::ArcLength) elsewhere.
+    /// [`Uniform`](Self::Uniform) if the spacing of the points varies as smoothly as that of samples at equal
+    /// steps of a smooth parameter, otherwise [`ArcLength`](Self::ArcLength).
     #[default]
     Automatic,
     /// Five-point stencils for points at equal steps of some smooth parameter: fourth order.
     Uniform,
     /// Five-point stencils on estimated arc lengths, for points at any spacing: fourth order.
     ArcLength,
-    /// Five-point stencils on the given parameters, ascending, one a point: fourth order. On a closed curve one more
-    /// parameter follows, at which the first point comes again.
+    /// Five-point stencils on the given ascending parameters, one per point: fourth order. A closed curve
+    /// needs one more parameter, at which it returns to the first point.
     Parameters(&'a [f64]),
-    /// Tangent of the circle through each point and its neighbors: second order, for any spacing, and exact on circles.
+    /// Tangent of the circle through each point and its neighbors, for any spacing: second order, exact on
+    /// circles.
     Circle,
 }
 
-/// Why points alone determine no tangent. Indices count from zero.
+/// Errors when estimating tangents. Indices count from zero.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TangentError {
     /// Two neighbors coincide.
-    #[error("points {index} and {next} coincide; remove one, or give the tangents")]
+    #[error("points {index} and {next} coincide; remove one of them, or give the tangents")]
     RepeatedPoint {
         /// The first of the two.
         index: usize,
         /// The other.
         next: usize,
     },
-    /// The points around this one run back and forth, as at a cusp.
-    #[error("the points around point {index} determine no tangent: a cusp, or too coarse samples")]
+    /// The differences to the neighboring points cancel, as at a cusp.
+    #[error("the neighbors of point {index} do not determine a tangent: it is a cusp, or the samples are too coarse")]
     Undetermined {
         /// The point.
         index: usize,
     },
-    /// Parameters are too few, too many, not finite or not ascending.
-    #[error("parameter {index} is missing, superfluous, not finite or not greater than the one before")]
+    /// The parameters are too few, too many, not finite or not ascending.
+    #[error("parameter {index} is missing, superfluous, not finite, or not greater than the previous one")]
     Parameter {
         /// The parameter.
         index: usize,
     },
 }
 
-/// Second differences of the logarithm of the spacing above this multiple of the squared turning angle mean that the
-/// points are not at equal steps of a smooth parameter. Larger: jittered points get uniform stencils, which do not
-/// converge on them. Smaller: coarse uniform samples get the arc-length stencils, which are about three times less
-/// accurate there.
+/// Points count as uniform samples if the second differences of the logarithm of their spacing are at most
+/// this multiple of the squared turning angle. Larger: jittered points get uniform stencils, which do not
+/// converge on them. Smaller: coarse uniform samples get arc-length stencils, whose error on such samples
+/// is about three times as large.
 const ROUGHNESS: f64 = 0.25;
 
-/// Below this length relative to the largest weighted chord, a tangent is cancellation. Larger: strongly turning
-/// samples are refused. Smaller: rounding passes as a direction.
+/// Smallest length of a tangent relative to the largest weighted chord. Larger: strongly turning samples
+/// are rejected. Smaller: rounding errors are accepted as a direction.
 const CANCELLATION: f64 = 1e-10;
 
-/// Unit tangents at `points`, which have been checked to be finite and enough.
+/// Unit tangents at `points`. The caller has checked that there are enough points and that all are finite.
 pub(crate) fn estimate_tangents(
     points: &[DVec3],
     closed: bool,
@@ -98,7 +100,7 @@ impl Samples<'_> {
         self.at(index as isize + 1) - self.points[index]
     }
 
-    /// Chord lengths, none of them zero.
+    /// Chord lengths. Returns an error if one is zero.
     fn chord_lengths(&self) -> Result<Vec<f64>, TangentError> {
         (0..self.segments())
             .map(|index| match self.chord(index).length() {
@@ -108,7 +110,7 @@ impl Samples<'_> {
             .collect()
     }
 
-    /// The unit vector along `weighted`, which is a sum of differences of size `scale`.
+    /// Unit vector along `weighted`, a sum of differences whose largest has the length `scale`.
     fn direction(&self, index: usize, weighted: DVec3, scale: f64) -> Result<DVec3, TangentError> {
         if weighted.length() <= CANCELLATION * scale {
             return Err(TangentError::Undetermined { index });
@@ -122,7 +124,8 @@ impl Samples<'_> {
         (0..count)
             .map(|index| {
                 let i = index as isize;
-                // Weights by offset from this point; ends are mirror images with opposite sign.
+                // Weights by offset from this point. The stencils at the end mirror those at the start, with
+                // opposite sign.
                 let (forward, weights): (bool, &[(isize, f64)]) = match (index, last - index, last) {
                     _ if self.closed => (true, &[(-2, 1.0), (-1, -8.0), (1, 8.0), (2, -1.0)]),
                     (_, _, 1) => (index == 0, &[(1, 1.0)]),
@@ -135,12 +138,12 @@ impl Samples<'_> {
                     _ => (true, &[(-2, 1.0), (-1, -8.0), (1, 8.0), (2, -1.0)]),
                 };
                 let sign = if forward { 1 } else { -1 };
-                let here = self.points[index];
+                let origin = self.points[index];
                 let mut scale: f64 = 0.0;
                 let sum: DVec3 = weights
                     .iter()
                     .map(|&(offset, weight)| {
-                        let difference = (self.at(i + sign * offset) - here) * (weight * sign as f64);
+                        let difference = (self.at(i + sign * offset) - origin) * (weight * sign as f64);
                         scale = scale.max(difference.length());
                         difference
                     })
@@ -150,7 +153,7 @@ impl Samples<'_> {
             .collect()
     }
 
-    /// Tangents by the derivative of the interpolating polynomial through five neighbors at ascending parameters.
+    /// Tangents from the derivative of the polynomial through five neighbors, at ascending parameters.
     fn on_parameters(&self, parameters: &[f64]) -> Result<Vec<DVec3>, TangentError> {
         let count = self.points.len();
         let width = count.min(5);
@@ -168,14 +171,14 @@ impl Samples<'_> {
                     (i - width as isize / 2).clamp(0, (count - width) as isize)
                 };
                 let neighbors: Vec<isize> = (start..start + width as isize).collect();
-                let here = parameter(i);
+                let at = parameter(i);
                 let mut scale: f64 = 0.0;
                 let mut sum = DVec3::ZERO;
                 for &k in neighbors.iter().filter(|&&k| k != i) {
-                    // Derivative at `here` of the Lagrange polynomial that is one at k and zero at the others.
-                    let mut weight = 1.0 / (parameter(k) - here);
+                    // Derivative at point i of the Lagrange polynomial that is one at k and zero at the others.
+                    let mut weight = 1.0 / (parameter(k) - at);
                     for &j in neighbors.iter().filter(|&&j| j != k && j != i) {
-                        weight *= (here - parameter(j)) / (parameter(k) - parameter(j));
+                        weight *= (at - parameter(j)) / (parameter(k) - parameter(j));
                     }
                     let difference = (self.at(k) - self.points[index]) * weight;
                     scale = scale.max(difference.length());
@@ -199,7 +202,8 @@ impl Samples<'_> {
         Ok(())
     }
 
-    /// Stencils on chord lengths, then twice on chords lengthened to arcs by the turning of the tangents found before.
+    /// Tangents from stencils on chord lengths, then refined twice on arc lengths. The arc lengths follow from
+    /// the chords and the turning of the previous tangents.
     fn arc_length(&self) -> Result<Vec<DVec3>, TangentError> {
         let chords = self.chord_lengths()?;
         let mut tangents = self.on_parameters(&cumulative(&chords))?;
@@ -210,7 +214,7 @@ impl Samples<'_> {
                 .map(|(i, chord)| {
                     let (start, end) = (tangents[i], tangents[(i + 1) % tangents.len()]);
                     let turning = libm::atan2(start.cross(end).length(), start.dot(end));
-                    // An arc of a circle is longer than its chord by θ²/24 to leading order.
+                    // To leading order, an arc of a circle is longer than its chord by the factor 1 + θ²/24.
                     chord * (1.0 + turning * turning / 24.0)
                 })
                 .collect();
@@ -246,7 +250,7 @@ impl Samples<'_> {
         Ok(tangents)
     }
 
-    /// True where the spacing looks like that of equal steps of a smooth parameter.
+    /// Returns true if the spacing is consistent with equal steps of a smooth parameter.
     fn is_uniform(&self) -> Result<bool, TangentError> {
         let lengths = self.chord_lengths()?;
         let count = lengths.len();

@@ -1,6 +1,6 @@
-//! Table 1 of Mäurer and Jüttler 1999, with the signed λ₁ and λ₂ that it needs and with the absolute values that it
-//! prints, on seeded random data and on short arcs.
-#![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
+//! Table 1 of Mäurer and Jüttler 1999 on seeded random data and on short arcs, with the correct signed λ₁ and λ₂ and
+//! with the printed absolute values.
+#![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use glam::DVec3;
 use isochore_curve::{Bezier, Curve, PhCubic, PhCubicError, RationalRotation};
@@ -13,7 +13,7 @@ struct Data {
     t1: DVec3,
 }
 
-/// The numbers of table 1, in its own form, which cancels on short arcs.
+/// The quantities of table 1 in the printed form, which cancels on short arcs.
 #[derive(Debug, Clone, Copy)]
 struct Table {
     cosine: f64,
@@ -30,7 +30,7 @@ impl Data {
         let cosine = self.t0.dot(self.t1);
         let (along_start, along_end) = (self.chord.dot(self.t0), self.chord.dot(self.t1));
         let squared_sine = 1.0 - cosine * cosine;
-        // The part of the chord in the plane of the tangents is λ₁ t₀ − λ₂ t₁.
+        // The component of the chord in the plane of the tangents is λ₁ t₀ − λ₂ t₁.
         let lambda =
             [(along_start - cosine * along_end) / squared_sine, -(along_end - cosine * along_start) / squared_sine];
         let gap = self.chord.dot(self.t0.cross(self.t1)) / squared_sine.sqrt();
@@ -44,7 +44,7 @@ impl Data {
         ([first, last], [departure, self.chord - departure - arrival, arrival])
     }
 
-    /// How far the polygon is from conditions (17), relative to the square of its size: the hodograph's squared length
+    /// Residual of conditions (17), relative to the squared size of the polygon. The squared length of the hodograph
     /// must be the square of a quadratic polynomial.
     fn residual(&self, table: &Table, x: f64) -> f64 {
         let ([first, last], [a, b, c]) = self.sides(table, x);
@@ -57,7 +57,7 @@ impl Data {
 }
 
 impl Table {
-    /// Linear and constant coefficient of the equation for X: (1 + 2c) X² + p X + q = 0.
+    /// Linear and constant coefficients p, q of the equation (1 + 2c) X² + p X + q = 0.
     fn coefficients(&self, [lambda, mu]: [f64; 2]) -> [f64; 2] {
         [lambda + mu, 2.0 * self.squared_gap / (1.0 - self.cosine) - lambda * mu]
     }
@@ -100,14 +100,14 @@ fn random_data(count: usize) -> Vec<Data> {
 }
 
 #[test]
-fn signed_lambdas_hold_for_all_data_and_absolute_values_for_one_class_of_signs() {
+fn signed_lambdas_are_correct_for_all_data_and_absolute_values_for_one_class_of_signs() {
     let mut roots_in_class = 0;
     let mut roots_elsewhere = 0;
     for data in random_data(4000) {
         let table = data.table();
         let [lambda, mu] = [table.lambda[0], -table.lambda[1]];
         for x in table.roots([lambda, mu]) {
-            // Rounding, magnified by up to a thousand where tangents are nearly parallel or a root is far away.
+            // Rounding is amplified up to a thousand times if tangents are nearly parallel or a root is large.
             assert!(data.residual(&table, x) < 4e-12, "{data:?}: {:e}", data.residual(&table, x));
         }
         for x in table.roots([lambda.abs(), mu.abs()]) {
@@ -116,42 +116,42 @@ fn signed_lambdas_hold_for_all_data_and_absolute_values_for_one_class_of_signs()
                 roots_in_class += 1;
                 assert!(residual < 4e-12, "{data:?}: {residual:e}");
             } else {
-                // Wrong by a share of the data themselves; the least is where both values nearly vanish.
+                // The error is comparable to the data. It is smallest if both values are nearly zero.
                 roots_elsewhere += 1;
                 assert!(residual > 1e-6, "{data:?}: {residual:e}");
             }
         }
     }
-    // The signs are right for a quarter of the data, which have roots more often.
+    // A quarter of the data have these signs, and they have roots more often.
     assert!(roots_in_class > 1000 && roots_elsewhere > 3000, "{roots_in_class} and {roots_elsewhere}");
 }
 
 #[test]
-fn random_data_have_solutions_as_often_as_known() {
+fn random_data_have_the_known_solution_rates() {
     let count = 40_000;
-    // Data without a real root, and with no, one and two solutions that run along both tangents.
-    let mut shares = [0.0; 4];
+    // Cases: no real root, then zero, one and two solutions that follow both tangents.
+    let mut rates = [0.0; 4];
     for data in random_data(count) {
         let table = data.table();
         let [lambda, mu] = [table.lambda[0], -table.lambda[1]];
         let roots = table.roots([lambda, mu]);
         let valid: Vec<f64> = roots.iter().copied().filter(|&x| lambda - x > 0.0 && mu - x > 0.0).collect();
         let case = if roots.is_empty() { 0 } else { 1 + valid.len() };
-        shares[case] += 1.0 / count as f64;
+        rates[case] += 1.0 / count as f64;
         match PhCubic::hermite(DVec3::ZERO, data.chord, data.t0, data.t1) {
             Err(PhCubicError::NoRealRoot { .. }) => assert_eq!(case, 0, "{data:?}"),
             Err(error) => assert_eq!((case, error), (1, PhCubicError::WrongDirection), "{data:?}"),
             Ok(cubic) => {
                 let lengths = valid.iter().map(|&x| data.sides(&table, x).1.map(DVec3::length).iter().sum::<f64>());
                 let shorter = lengths.fold(f64::INFINITY, f64::min);
-                // The cancellation of table 1, not of the cubic, sets the bound.
+                // The bound is due to the cancellation in table 1, not in the cubic.
                 assert!((cubic.polygon_length() / shorter - 1.0).abs() < 1e-9, "{data:?}");
             }
         }
     }
-    // Given to whole percents; the spread of 40,000 samples is a quarter of one.
-    for (share, expected) in shares.into_iter().zip([0.57, 0.09, 0.25, 0.09]) {
-        assert!((share - expected).abs() < 0.0075, "{shares:?}");
+    // The reference values are whole percentages. The standard deviation for 40,000 samples is a quarter of a percent.
+    for (rate, expected) in rates.into_iter().zip([0.57, 0.09, 0.25, 0.09]) {
+        assert!((rate - expected).abs() < 0.0075, "{rates:?}");
     }
 }
 
@@ -167,7 +167,7 @@ fn roots_are_golden() {
     ] {
         let table = Data::new(DVec3::ZERO, end, t0, t1).table();
         let [first, _, last] = PhCubic::hermite(DVec3::ZERO, end, t0, t1).unwrap().sides().map(DVec3::length);
-        // Given to 15 digits.
+        // The reference values have 15 digits.
         assert!((table.lambda[0] - first - golden).abs() < 1.5e-15);
         assert!((-table.lambda[1] - last - golden).abs() < 1.5e-15);
     }
@@ -178,7 +178,7 @@ fn the_data_of_table_five_and_their_replacements_have_the_golden_numbers() {
     let (x0, x1) = (v(1000.0, 0.0, 0.0), v(1000.0, 2000.0, 4000.0));
     let table = |t0, t1| Data::new(x0, x1, t0, t1).table();
     let printed = table(v(1.0, 5.0, -1.0), v(-3.0, 2.0, 5.0));
-    // Half a unit of the last digit given.
+    // Bounds: half a unit of the last digit.
     assert!((printed.lambda[0] - 915.1736).abs() < 5e-5 && (printed.lambda[1] + 3836.1715).abs() < 5e-5);
     assert!((printed.squared_gap.sqrt() - 2001.956).abs() < 5e-4 && (printed.cosine - 0.062439).abs() < 5e-7);
     assert!((printed.discriminant() + 96474.8849).abs() < 5e-5);
@@ -191,15 +191,15 @@ fn the_data_of_table_five_and_their_replacements_have_the_golden_numbers() {
 }
 
 #[test]
-fn short_arcs_keep_digits_that_the_printed_form_loses() {
-    // (u, u²/2, u³/6) from the origin, where positions have all their digits: the first side is a third of the length
-    // up to a share of its square.
+fn short_arcs_keep_more_digits_than_the_printed_form() {
+    // The curve (u, u²/2, u³/6) starts at the origin, so positions keep all digits. The first side is a third of the
+    // length, up to a relative error of the order of the squared length.
     let curve = Bezier::new(vec![DVec3::ZERO, v(1.0, 0.0, 0.0) / 3.0, v(4.0, 1.0, 0.0) / 6.0, v(6.0, 3.0, 1.0) / 6.0]);
     for (length, bound, printed_error) in [(1e-6, 3e-7, 1e-5), (1e-7, 5e-5, 1e-3)] {
         let (start, end) = (curve.jet(0.0), curve.jet(length));
         let cubic = PhCubic::hermite(start.position, end.position, start.first, end.first).unwrap();
-        let share = cubic.sides()[0].length() / (length / 3.0);
-        assert!((share - 1.0).abs() < bound, "{length:e}: {:e}", share - 1.0);
+        let ratio = cubic.sides()[0].length() / (length / 3.0);
+        assert!((ratio - 1.0).abs() < bound, "{length:e}: {:e}", ratio - 1.0);
         let data = Data::new(start.position, end.position, start.first, end.first);
         let table = data.table();
         let printed = table
@@ -219,7 +219,7 @@ fn plane_cubics_have_a_constant_rotation() {
         let rotation = RationalRotation::with_initial_angle(&plane, angle).unwrap();
         assert_eq!(rotation.squared_error, 0.0);
         for at in [0.0, 0.4, 1.0] {
-            // Twice an arc tangent of a tangent.
+            // The angle is twice an arctangent of a tangent.
             assert!((rotation.angle(at) - angle).abs() < 2e-15, "W is constant");
         }
     }

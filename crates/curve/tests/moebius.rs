@@ -1,6 +1,6 @@
-//! Rational curves with rational frames against the examples of Bartoň et al. 2009.
+//! Rational curves with rational frames, compared with the examples of Bartoň et al. 2009.
 
-#![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
+#![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use glam::DVec3;
 use isochore_curve::{
@@ -20,14 +20,14 @@ struct Errors {
     position: f64,
 }
 
-/// Nodes and weights of the Gauss–Legendre rule on [0, 1], by Newton's method on the polynomial.
+/// Nodes and weights of the Gauss–Legendre rule on [0, 1], by Newton's method on the Legendre polynomial.
 fn gauss_rule(count: usize) -> Vec<(f64, f64)> {
     let degree = count as f64;
     (0..count)
         .map(|i| {
             let mut x = libm::cos((i as f64 + 0.75) / (degree + 0.5) * std::f64::consts::PI);
             let mut slope = 0.0;
-            // Quadratic convergence from two digits on, with one step to spare.
+            // Convergence is quadratic and starts at two digits; one step is a reserve.
             for _ in 0..6 {
                 let (mut before, mut value) = (1.0, x);
                 for n in 2..=count {
@@ -42,8 +42,8 @@ fn gauss_rule(count: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Errors (23), (25) of the spline with `segments` segments, by the Gauss–Legendre rule with `nodes` nodes a segment:
-/// frames compared with those at the nearest points of the cubic. The maxima are over the nodes, and so a little low.
+/// Errors (23), (25) of the spline with `segments` segments, by the Gauss–Legendre rule with `nodes` nodes per segment.
+/// Frames are compared with those at the nearest points of the cubic. The maxima over the nodes are slightly low.
 fn errors(segments: usize, tilt: Tilt, nodes: usize) -> Errors {
     let curve = cubic();
     let reference = -DVec3::Y;
@@ -69,20 +69,20 @@ fn errors(segments: usize, tilt: Tilt, nodes: usize) -> Errors {
     errors
 }
 
-/// Asserts that `found` has all digits of `golden`, up to half a unit of the last and to the rounding of a distance
-/// between unit vectors.
+/// Asserts that `found` agrees with all digits of `golden`, up to half a unit of the last digit and the rounding of a
+/// distance between unit vectors.
 fn assert_digits(found: f64, golden: &str) {
     let (mantissa, exponent) = golden.split_once('e').unwrap();
     let decimals = mantissa.split_once('.').unwrap().1.len() as i32;
     let unit = 10f64.powi(exponent.parse::<i32>().unwrap() - decimals);
     let expected: f64 = golden.parse().unwrap();
-    assert!((found - expected).abs() <= 0.5 * unit + 3e-15, "{found:e} against {golden}");
+    assert!((found - expected).abs() <= 0.5 * unit + 3e-15, "{found:e}, expected {golden}");
 }
 
 #[test]
 fn example_two_has_the_golden_errors() {
-    // Segments, nodes of the average, average and end error, and the maxima over twelve nodes a segment. The integrand
-    // has kinks, so the number of nodes shows: with 64 segments the average over twelve is 0.7 percent high.
+    // Segments, nodes of the average, average and end error, and the maxima over twelve nodes per segment. The integrand
+    // has kinks, so the number of nodes matters: with 64 segments, the average over twelve nodes is 0.7 percent high.
     for (segments, nodes, average, end, largest, position) in [
         (2, 96, "3.199771076571e-2", "2.66898801971e-2", "5.54e-2", "3.55e-2"),
         (4, 96, "6.8625e-3", "2.00833640738e-3", "2.92e-2", "3.96e-3"),
@@ -101,7 +101,7 @@ fn example_two_has_the_golden_errors() {
 }
 
 #[test]
-fn orders_are_three_between_and_four_at_the_joints() {
+fn order_is_three_between_joints_and_four_at_joints() {
     for tilt in [Tilt::Never, Tilt::WhenNeeded] {
         let (coarse, fine) = (errors(32, tilt, 100), errors(64, tilt, 100));
         assert!(fine.average / coarse.average < 0.15, "third order or better: {}", fine.average / coarse.average);
@@ -123,7 +123,7 @@ fn the_tilt_restores_the_orders_near_stationary_curvature() {
 }
 
 #[test]
-fn joints_are_those_of_double_reflection() {
+fn frames_at_joints_match_double_reflection() {
     for tilt in [Tilt::Never, Tilt::WhenNeeded] {
         for segments in [8, 32] {
             let curve = cubic();
@@ -133,7 +133,7 @@ fn joints_are_those_of_double_reflection() {
                     .unwrap();
             let spline = MoebiusSpline::interpolate(&curve, segments, tilt).unwrap();
             for (joint, (_, frame)) in spline.frames(-DVec3::Y, 1).unwrap().iter().enumerate() {
-                // The sphere through a short segment is found from differences, and loses a few digits.
+                // The sphere of a short segment follows from differences, which loses a few digits.
                 let distance = frame.r.distance(reflected.stations[joint].r);
                 assert!(distance < 1e-12, "{segments} {joint}: {distance:e}");
             }
@@ -160,7 +160,7 @@ fn plain_centers_fail_on_every_circular_helix() {
 }
 
 #[test]
-fn the_tilt_never_fails_from_seven_to_a_hundred_and_sixty_segments() {
+fn the_tilt_succeeds_from_7_to_160_segments() {
     let example = TrigonometricCurve::barton_example();
     let helix = TrigonometricCurve::helix(1.0, 0.5, (0.0, 3.0 * std::f64::consts::PI));
     for segments in 7..=160 {
@@ -170,7 +170,7 @@ fn the_tilt_never_fails_from_seven_to_a_hundred_and_sixty_segments() {
     }
     let fails: Vec<usize> =
         (7..=160).filter(|&k| MoebiusSpline::interpolate(&example, k, Tilt::Never).is_err()).collect();
-    assert_eq!(fails, [37, 151], "without it, two numbers of segments have no solution");
+    assert_eq!(fails, [37, 151], "without the tilt, two numbers of segments have no solution");
 }
 
 #[test]
@@ -182,7 +182,7 @@ fn example_one_has_the_golden_errors() {
     let joints = spline.frames(normal, 1).unwrap();
     let exact = |parameter| exact_frames(&curve, &[first, parameter], normal).unwrap()[1].r;
     assert_digits(joints[8].1.r.distance(exact(last)), "1.3165332233e-2");
-    // The average over twelve nodes a segment, which is 2e-4 high.
+    // The average over twelve nodes per segment is 2e-4 high.
     let search = ClosestPoint::new(&curve);
     let rule = gauss_rule(12);
     let parameters: Vec<f64> = rule.iter().map(|node| node.0).collect();
@@ -213,7 +213,7 @@ fn segments_are_rational_of_degree_six_on_their_sphere() {
                 }
                 let point = points[0].truncate() / points[0].w;
                 assert!(point.distance(segment.position(u)) < 1e-14);
-                // The derivatives belong to the positions.
+                // The derivatives match differences of positions.
                 let step = 1e-5;
                 let (before, at, after) = (segment.jet(u - step), segment.jet(u), segment.jet(u + step));
                 assert!(((after.position - before.position) / (2.0 * step)).distance(at.first) < 1e-8);
@@ -237,15 +237,15 @@ fn frames_are_rotation_minimizing_along_the_segment() {
 }
 
 #[test]
-fn planes_lines_and_circles_are_cases_like_others() {
+fn planes_lines_and_circles_have_solutions() {
     let make = |end, t0, t1| MoebiusSegment::hermite(DVec3::ZERO, end, t0, t1, Tilt::WhenNeeded);
     let line = make(DVec3::X, DVec3::X, DVec3::X).unwrap();
     assert!(line.position(0.5).distance(DVec3::X * 0.5) < 1e-15);
-    // A quarter circle, whose reflected tangents agree.
+    // A quarter circle: the reflected tangents agree.
     let arc = make(DVec3::new(1.0, 1.0, 0.0), DVec3::X, DVec3::Y).unwrap();
     assert!(arc.position(0.5).z.abs() < 1e-15);
     assert!(arc.tangent(1.0).distance(DVec3::Y) < 1e-14);
-    // An S in a plane, which the published centers cannot do.
+    // A planar S: the published centers have no solution.
     let (end, tangent) = (DVec3::new(2.0, 0.5, 0.0), DVec3::X);
     let plain = MoebiusSegment::hermite(DVec3::ZERO, end, tangent, tangent, Tilt::Never);
     assert_eq!(plain, Err(PhCubicError::ParallelTangents));

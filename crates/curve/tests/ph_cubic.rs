@@ -1,5 +1,5 @@
-//! Pythagorean-hodograph cubics against golden values, their own definitions and the curves that they follow.
-#![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
+//! Pythagorean-hodograph cubics, compared with golden values, their definition, and the curves that they approximate.
+#![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use glam::DVec3;
 use isochore_curve::{
@@ -49,7 +49,7 @@ fn hermite_data_have_the_golden_cubics() {
             1.31759802272088,
         ),
     ] {
-        // Given to 15 digits.
+        // The reference values have 15 digits.
         assert!(cubic.control_points()[1].distance(b1) < 2e-15);
         assert!(cubic.control_points()[2].distance(b2) < 2e-15);
         assert!((cubic.rotation_factor() - factor).abs() < 5e-15);
@@ -85,16 +85,16 @@ fn closed_forms_match_the_curve() {
     assert!(end.r.distance(v(-0.7956932015674809, -0.6056998670788134, 0.0)) < 1e-14);
 }
 
-/// Example 2 of Wang et al. 2008: the printed data have no solution, the replacements have the known errors.
+/// Example 2 of Wang et al. 2008: the printed data have no solution. The replacements have the known errors.
 #[test]
 fn table_five_has_no_cubic_and_its_replacements_do() {
     let (x0, x1) = (v(1000.0, 0.0, 0.0), v(1000.0, 2000.0, 4000.0));
     for (sign0, sign1) in [(1.0, 1.0), (-1.0, -1.0)] {
-        let refused = PhCubic::hermite(x0, x1, v(1.0, 5.0, -1.0) * sign0, v(-3.0, 2.0, 5.0) * sign1).unwrap_err();
-        let PhCubicError::NoRealRoot { discriminant } = refused else { panic!("{refused}") };
-        // Given to nine digits.
+        let error = PhCubic::hermite(x0, x1, v(1.0, 5.0, -1.0) * sign0, v(-3.0, 2.0, 5.0) * sign1).unwrap_err();
+        let PhCubicError::NoRealRoot { discriminant } = error else { panic!("{error}") };
+        // The reference value has nine digits.
         assert!((discriminant + 96474.8849).abs() < 6e-5, "{discriminant}");
-        assert!(refused.to_string().starts_with("no Pythagorean-hodograph cubic has these ends"));
+        assert!(error.to_string().starts_with("no Pythagorean-hodograph cubic has these ends"));
     }
     for (t0, t1, rotation, errors) in [
         (v(1.0, 5.0, -1.0), v(3.0, -2.0, 5.0), -1.840809276205, [4.00467e-8, 3.380279e-4, 1.620193e-4]),
@@ -109,7 +109,7 @@ fn table_five_has_no_cubic_and_its_replacements_do() {
             let spine = Spine::sample(&cubic, 64).unwrap();
             let frames = rotation_minimizing_frames(&spine, normal, method, Default::default()).unwrap();
             let error = exact.angle_to(frames.stations[64].r).abs();
-            assert!((error / expected - 1.0).abs() < 5e-6, "{method:?}: {error:e} against {expected:e}");
+            assert!((error / expected - 1.0).abs() < 5e-6, "{method:?}: {error:e}, expected {expected:e}");
         }
     }
 }
@@ -130,7 +130,7 @@ fn double_reflection_on_the_replacement_is_of_fourth_order() {
 }
 
 #[test]
-fn special_data_have_their_own_answers() {
+fn special_data_have_the_expected_results() {
     let make = |end, t0, t1| PhCubic::hermite(DVec3::ZERO, end, t0, t1);
     let line = make(v(3.0, 0.0, 0.0), DVec3::X, DVec3::X * 2.0).unwrap();
     assert!(line.is_straight() && line.rotation_to(1.0) == 0.0);
@@ -142,29 +142,29 @@ fn special_data_have_their_own_answers() {
     assert_eq!(make(DVec3::ZERO, DVec3::X, DVec3::Y), Err(PhCubicError::RepeatedPoint));
     assert_eq!(make(DVec3::X, DVec3::X, DVec3::ZERO), Err(PhCubicError::ZeroTangent));
     assert_eq!(make(DVec3::X, DVec3::NAN, DVec3::X), Err(PhCubicError::NotFinite));
-    // A half turn, where the general equation degenerates.
+    // A half turn: the general equation degenerates.
     let turn = make(v(0.0, 2.0, 0.5), DVec3::X, -DVec3::X).unwrap();
     assert!((turn.speed(0.5) - turn.jet(0.5).speed()).abs() < 1e-14);
-    // Tangents at 120 degrees, where the quadratic equation is linear.
+    // Tangents at 120 degrees: the quadratic equation becomes linear.
     let linear = make(v(1.0, 1.0, 0.0), v(0.0, 1.0, 0.0), v(0.75f64.sqrt(), -0.5, 0.0)).unwrap();
     assert!((linear.speed(0.3) - linear.jet(0.3).speed()).abs() < 1e-13);
 }
 
 #[test]
 fn short_arcs_keep_their_digits() {
-    // (u, u²/2, u³/6) near the origin, where positions have all their digits.
+    // The curve (u, u²/2, u³/6) near the origin, so that positions keep all digits.
     let h: f64 = 1e-6;
     let curve =
         Bezier::new(vec![DVec3::ZERO, v(1.0 / 3.0, 0.0, 0.0), v(2.0 / 3.0, 1.0 / 6.0, 0.0), v(1.0, 0.5, 1.0 / 6.0)]);
     let (a, b) = (curve.jet(0.0), curve.jet(h));
     let cubic = PhCubic::hermite(a.position, b.position, a.first, b.first).unwrap();
-    // The first side is a third of the length up to a share h². The tangents differ by h, with ten digits, and their
-    // product with the chord cancels once more; with the printed form 4e-2 would be left.
+    // The first side is a third of the length, up to a relative error h². The tangents differ by h, which has ten
+    // digits, and their product with the chord cancels again. The printed form would have an error of 4e-2.
     assert!((cubic.sides()[0].length() / (h / 3.0) - 1.0).abs() < 5e-6, "{}", cubic.sides()[0].length() / (h / 3.0));
 }
 
 proptest! {
-    /// Every solution satisfies the two conditions (17) on the control polygon: the speed is the length of the
+    /// Every solution satisfies the two conditions (17) on the control polygon, so the speed is the length of the
     /// derivative.
     #[test]
     fn solutions_are_pythagorean(
@@ -177,7 +177,8 @@ proptest! {
             let scale = cubic.polygon_length();
             for i in 0..=8 {
                 let at = f64::from(i) / 8.0;
-                // Roots of the quadratic lose digits where it degenerates; the cubics stay Pythagorean to half of them.
+                // Near the degenerate cases, the roots of the quadratic lose digits. The cubics satisfy the conditions to
+                // half of the digits.
                 prop_assert!((cubic.speed(at) - cubic.jet(at).speed()).abs() < 1e-7 * scale);
             }
             prop_assert!(cubic.jet(0.0).tangent().distance(t0.normalize()) < 1e-6);
@@ -188,26 +189,26 @@ proptest! {
 
 #[test]
 fn rational_rotations_have_the_golden_optimum() {
-    // Half a unit of the last digit given, and one of B's squared error, which is given cut off.
+    // Bounds: half a unit of the last digit, and one unit for the squared error of B, which is truncated.
     for (cubic, lambda, squared_error, angle_error, lambda_bound, squared_bound) in [
         (example_a(), -0.7923418062, 1.00076646e-8, 2.560029e-5, 5.1e-11, 5.1e-17),
         (example_b(), -0.2566571628, 1.683115960605e-5, 9.15362e-4, 5.1e-11, 1e-17),
         (barton(), 0.2174091424693, 8.834531147085e-4, 7.041642e-3, 2e-13, 6e-17),
     ] {
         let rotation = RationalRotation::symmetric(&cubic);
-        assert!((rotation.lambda - lambda).abs() < lambda_bound, "{} against {lambda}", rotation.lambda);
+        assert!((rotation.lambda - lambda).abs() < lambda_bound, "{}, expected {lambda}", rotation.lambda);
         assert!((rotation.squared_error - squared_error).abs() < squared_bound, "{:e}", rotation.squared_error);
         let largest = (0..=2000)
             .map(|i| f64::from(i) / 2000.0)
             .map(|v| (rotation.angle(v) - rotation.initial_angle - cubic.rotation_to(v)).abs())
             .fold(0.0, f64::max);
-        assert!((largest / angle_error - 1.0).abs() < 5e-7, "{largest:e} against {angle_error:e}");
+        assert!((largest / angle_error - 1.0).abs() < 5e-7, "{largest:e}, expected {angle_error:e}");
         assert!(rotation.denominator.iter().all(|&b| b > 0.0), "no pole");
     }
 }
 
 #[test]
-fn the_least_squared_error_does_not_depend_on_the_initial_angle() {
+fn the_smallest_squared_error_does_not_depend_on_the_initial_angle() {
     for (cubic, zero, quarter) in [
         (example_a(), -0.8208088061, Some(-1.0039084764)),
         (example_b(), -0.4390550704, Some(-0.9726099684)),
@@ -216,12 +217,12 @@ fn the_least_squared_error_does_not_depend_on_the_initial_angle() {
         let symmetric = RationalRotation::symmetric(&cubic);
         let from_zero = RationalRotation::with_initial_angle(&cubic, 0.0).unwrap();
         assert!((from_zero.lambda - zero).abs() < 5.1e-11, "{}", from_zero.lambda);
-        // The rounding of a squared error of 1e-8, which is a sum of squared differences of numbers of size one.
+        // Rounding of a squared error of 1e-8, a sum of squared differences of numbers of size one.
         assert!((from_zero.squared_error / symmetric.squared_error - 1.0).abs() < 5e-12);
         let from_binormal = RationalRotation::with_initial_angle(&cubic, std::f64::consts::FRAC_PI_2);
         match quarter {
             Some(lambda) => assert!((from_binormal.unwrap().lambda - lambda).abs() < 5.1e-11),
-            None => assert_eq!(from_binormal, None, "a pole"),
+            None => assert_eq!(from_binormal, None, "W has a pole"),
         }
     }
 }
@@ -248,12 +249,12 @@ fn planar_cubics_do_not_rotate() {
 }
 
 #[test]
-fn splines_follow_curves_to_the_tolerance() {
+fn splines_approximate_curves_within_the_tolerance() {
     let knot = TrigonometricCurve::torus_knot();
     for tolerance in [1e-2, 1e-5, 1e-8] {
         let spline = PhSpline::follow(&knot, tolerance).unwrap();
         assert!(spline.error() <= tolerance);
-        // Independently: no point of the knot is farther than the tolerance and what lies between the checks.
+        // An independent check: all points of the knot are within the tolerance, plus the error between the checks.
         let search = isochore_curve::ClosestPoint::new(&spline);
         let farthest = (0..3000)
             .map(|i| search.closest(knot.position(std::f64::consts::TAU * f64::from(i) / 3000.0)).distance)
@@ -264,24 +265,23 @@ fn splines_follow_curves_to_the_tolerance() {
 }
 
 #[test]
-fn flat_cubics_have_quiet_frames() {
-    // Between a visible arc and a line, where the Frenet frame dissolves in rounding: the frame must not notice.
+fn flat_cubics_have_stable_frames() {
+    // Between a visible arc and a line, rounding destroys the Frenet frame but must not affect the exact frame.
     for bend in [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-13, 1e-15, 0.0] {
         let (t0, t1) = (v(1.0, bend, 0.3 * bend), v(1.0, -bend, 0.2 * bend));
         let cubic = PhCubic::hermite(v(3.0, 1.0, 2.0), v(4.0, 1.0, 2.0 + 0.25 * bend), t0, t1).unwrap();
         let frames = cubic.exact_frames(&[0.0, 0.3, 1.0], DVec3::Y).unwrap();
         let exact = exact_frames(&cubic, &[0.0, 0.3, 1.0], DVec3::Y).unwrap();
         for (frame, exact) in frames.iter().zip(&exact) {
-            // The data are rounded at 2e-16 of coordinates up to 4, which the bend magnifies where the Frenet frame is
-            // used.
+            // The data are rounded at 2e-16 of coordinates up to 4. The bend amplifies this if the Frenet frame is used.
             assert!(frame.r.distance(exact.r) < 2e-9, "bend {bend:e}: {:e}", frame.r.distance(exact.r));
         }
     }
 }
 
 #[test]
-fn inflections_are_cut() {
-    // Planar: one inflection in the middle, where no cubic may cross.
+fn inflections_are_split() {
+    // A planar curve with one inflection at its midpoint, which must be a joint.
     let spline = PhSpline::follow(&Bezier::s_curve(0.0), 1e-5).unwrap();
     assert!(spline.error() <= 1e-5);
     let line = PhSpline::follow(&Bezier::new(vec![DVec3::ZERO, DVec3::X]), 1e-9).unwrap();
@@ -305,7 +305,7 @@ fn splines_converge_with_fourth_order_in_position_and_frame() {
     assert!((ratio - 0.0625).abs() < 2e-3, "{ratio}");
 }
 
-/// Theorem 10 on a helix: three digits given.
+/// Theorem 10 on a helix. The reference values have three digits.
 #[test]
 fn positions_on_a_helix_have_the_golden_errors() {
     let helix = TrigonometricCurve::helix(1.0, 0.5, (0.0, 4.0));
@@ -316,7 +316,7 @@ fn positions_on_a_helix_have_the_golden_errors() {
 }
 
 #[test]
-fn hopeless_curves_are_refused() {
+fn rejects_curves_that_have_no_spline() {
     let knot = TrigonometricCurve::torus_knot();
     assert!(matches!(PhSpline::follow(&knot, 0.0), Err(PhSplineError::Tolerance { .. })));
     assert!(matches!(PhSpline::follow(&knot, f64::NAN), Err(PhSplineError::Tolerance { .. })));

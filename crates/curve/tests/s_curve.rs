@@ -1,6 +1,6 @@
-//! The S-shaped curve of Zheng's thesis, section 3.4: as its height tends to zero the torsion in the middle tends to
-//! −π times a delta function, and quadrature of torsion fails where frames do not.
-#![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
+//! The S-shaped curve of Zheng's thesis, section 3.4. As its height tends to zero, the torsion at the midpoint tends to
+//! −π times a delta function. Quadrature of the torsion then fails, but frames remain accurate.
+#![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use isochore_curve::{
     rotation_minimizing_frames,
 };
 
-/// ∫ τ ds up to full turns, without quadrature of torsion: how far the Frenet frame turns against an exact one.
+/// ∫ τ ds up to full turns, without quadrature of the torsion: rotation of the Frenet frame relative to an exact frame.
 fn total_torsion_by_frames(curve: &Bezier) -> f64 {
     let ends = [0.0, 1.0];
     let frames = exact_frames(curve, &ends, DVec3::Z).unwrap();
@@ -18,7 +18,7 @@ fn total_torsion_by_frames(curve: &Bezier) -> f64 {
     end - start
 }
 
-/// Torsion times speed at equal steps of 1/64, or halfway between.
+/// Torsion times speed at `position` steps of 1/64.
 fn torsion_rate(curve: &Bezier, position: f64) -> f64 {
     let jet = curve.jet(position / 64.0);
     let binormal = jet.first.cross(jet.second);
@@ -26,7 +26,7 @@ fn torsion_rate(curve: &Bezier, position: f64) -> f64 {
 }
 
 #[test]
-fn frames_know_the_total_torsion_at_any_height() {
+fn frames_give_the_total_torsion_at_any_height() {
     for (height, exact) in [
         (1.0, -2.6400277700176),
         (0.1, -3.0991283131075),
@@ -35,7 +35,7 @@ fn frames_know_the_total_torsion_at_any_height() {
         (1e-8, -3.1415926493637),
     ] {
         let difference = total_torsion_by_frames(&Bezier::s_curve(height)) - exact;
-        // Given to 13 and 14 digits, and 1e-13 of the exact frame.
+        // The reference values have 13 and 14 digits; the exact frame adds 1e-13.
         let wrapped = difference - TAU * (difference / TAU).round();
         assert!(wrapped.abs() < 6e-13, "height {height}: {wrapped:e}");
     }
@@ -43,7 +43,7 @@ fn frames_know_the_total_torsion_at_any_height() {
 
 #[test]
 fn quadrature_of_torsion_fails_on_low_curves() {
-    // Height, then the midpoint and Simpson's rule with 64 parts; digits as given.
+    // Height, then the results of the midpoint rule and Simpson's rule with 64 parts.
     for (height, midpoint, midpoint_bound, simpson, simpson_bound) in [
         (1.0, -2.640150, 5e-7, -2.64003, 5e-6),
         (0.1, -3.0446, 5e-5, -2.9569, 5e-5),
@@ -62,7 +62,7 @@ fn quadrature_of_torsion_fails_on_low_curves() {
         assert!((by_midpoint - midpoint).abs() < midpoint_bound, "height {height}: midpoint {by_midpoint}");
         assert!((by_simpson - simpson).abs() < simpson_bound, "height {height}: Simpson {by_simpson}");
     }
-    // On the plane curve the sample at the inflection is 0/0, which only Simpson's rule meets.
+    // On the planar curve, the torsion at the inflection is 0/0. Only Simpson's rule samples it.
     let plane = Bezier::s_curve(0.0);
     assert!(torsion_rate(&plane, 32.0).is_nan());
     assert!((0..64).all(|i| torsion_rate(&plane, f64::from(i) + 0.5) == 0.0));
@@ -72,7 +72,7 @@ fn quadrature_of_torsion_fails_on_low_curves() {
 fn low_curves_have_the_golden_end_frames() {
     let curve = Bezier::s_curve(0.01);
     let exact = exact_frames(&curve, &[0.0, 1.0], DVec3::Z).unwrap()[1].r;
-    // Given to 15 digits.
+    // The reference values have 15 digits.
     assert!(exact.distance(DVec3::new(0.0, -0.024223287508502, 0.99970657312147)) < 1e-14, "{exact}");
     let spine = Spine::sample(&curve, 64).unwrap();
     let frames =
@@ -81,9 +81,9 @@ fn low_curves_have_the_golden_end_frames() {
     assert!(reflected.distance(DVec3::new(0.0, -0.024223273733433, 0.99970657345525)) < 1e-14, "{reflected}");
 }
 
-/// Second derivative of a function that is even about `at`, by differences of eighth order.
+/// Second derivative at `at` of a function that is even about `at`, by differences of eighth order.
 fn second_derivative(function: impl Fn(f64) -> f64, at: f64) -> f64 {
-    // Truncation step⁸ and rounding ε/step² are both near 1e-11 here.
+    // Truncation error step⁸ and rounding error ε/step² are both near 1e-11.
     let step = 2e-3;
     let weights = [8.0 / 5.0, -1.0 / 5.0, 8.0 / 315.0, -1.0 / 560.0];
     let pairs = (1..).zip(weights).map(|(i, weight)| {
@@ -94,32 +94,32 @@ fn second_derivative(function: impl Fn(f64) -> f64, at: f64) -> f64 {
 }
 
 #[test]
-fn the_middle_has_the_published_series() {
+fn the_midpoint_has_the_published_series() {
     for h in [0.5f64, 1.0, 2.0] {
         let curve = Bezier::s_curve(h);
         let middle = curve.jet(0.5);
         let (kappa, tau) = (0.8 * h, -2.4 / h);
         assert!((middle.curvature() / kappa - 1.0).abs() < 1e-14 && (middle.torsion() / tau - 1.0).abs() < 1e-13);
-        // A half turn about the x axis takes the curve to itself, so both are even about the middle: κ₁ = τ₁ = 0.
+        // The curve is symmetric under a half turn about the x axis, so both are even about the midpoint: κ₁ = τ₁ = 0.
         for offset in [0.01, 0.1, 0.3] {
             let (before, after) = (curve.jet(0.5 - offset), curve.jet(0.5 + offset));
             assert!((before.curvature() / after.curvature() - 1.0).abs() < 1e-12);
             assert!((before.torsion() / after.torsion() - 1.0).abs() < 1e-11);
         }
-        // Even functions of the parameter have this second derivative by arc length. Printed with the opposite sign.
+        // Second derivative of an even function with respect to arc length. The thesis prints the opposite sign.
         let squared_speed = middle.first.length_squared();
         let kappa_second = second_derivative(|u| curve.jet(u).curvature(), 0.5) / squared_speed;
         let expected = 192.0 * (3.0 + 3.0 * h * h - h.powi(4)) / (125.0 * h);
-        assert!((kappa_second - expected).abs() < 1e-9, "height {h}: {kappa_second} against {expected}");
-        // Without κ₁ and τ₁ the constant of theorem 4.4 is κ₀²τ₀³ − κ₀κ₂τ₀.
+        assert!((kappa_second - expected).abs() < 1e-9, "height {h}: {kappa_second}, expected {expected}");
+        // With κ₁ = τ₁ = 0, the constant of theorem 4.4 is κ₀²τ₀³ − κ₀κ₂τ₀.
         let constant = 9216.0 * h * (3.0 - h * h) / 3125.0;
         assert!((kappa * kappa * tau * tau * tau - kappa * kappa_second * tau - constant).abs() < 1e-8);
     }
 }
 
-/// Theorem 4.4 where its constant changes sign with the height: a step lags by K length⁵/720.
+/// Theorem 4.4 for heights at which its constant K changes sign: a step lags by K length⁵/720.
 #[test]
-fn a_step_across_the_middle_has_the_published_error() {
+fn a_step_across_the_midpoint_has_the_published_error() {
     for h in [0.1f64, 0.5, 1.0, 2.0] {
         let curve = Bezier::s_curve(h);
         let constant = 9216.0 * h * (3.0 - h * h) / 3125.0;
@@ -132,7 +132,7 @@ fn a_step_across_the_middle_has_the_published_error() {
             let length = 2.0 * half * curve.jet(0.5).speed();
             -exact.angle_to(stepped) * 720.0 / (constant * length.powi(5))
         };
-        // The ratio is one up to the square of the step, which extrapolation removes; what is left is its fourth power.
+        // The ratio is one up to the squared step. Extrapolation removes this term and leaves the fourth power.
         let extrapolated = (4.0 * ratio(0.01) - ratio(0.02)) / 3.0;
         assert!((extrapolated - 1.0).abs() < 3e-5, "height {h}: {extrapolated}");
     }

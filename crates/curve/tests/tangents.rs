@@ -1,4 +1,4 @@
-//! Tangents from few, uneven and bad points.
+//! Tangents estimated from few, uneven and invalid points.
 
 use glam::DVec3;
 use isochore_curve::{Curve, Spine, SpineError, TangentError, TangentRule, TrigonometricCurve};
@@ -19,14 +19,14 @@ fn error(count: usize, h: f64, rule: TangentRule<'_>) -> f64 {
 }
 
 #[test]
-fn few_points_have_the_order_of_their_number() {
-    // One segment: the chord, first order. Two: second. Three: third. Four and more: fourth.
+fn few_points_have_the_order_of_their_stencil() {
+    // One segment gives first order (the chord), two second, three third, and four or more fourth.
     for (count, order) in [(2, 1), (3, 2), (4, 3), (5, 4), (8, 4)] {
         for rule in [TangentRule::Uniform, TangentRule::ArcLength] {
-            // Chord lengths of so few points are as uniform as the parameter on a helix.
+            // On a helix, chord lengths are as uniform as the parameter.
             let ratio = error(count, 0.02, rule) / error(count, 0.04, rule);
             let expected = 0.5f64.powi(order);
-            assert!((ratio / expected - 1.0).abs() < 0.1, "{count} points, {rule:?}: {ratio} against {expected}");
+            assert!((ratio / expected - 1.0).abs() < 0.1, "{count} points, {rule:?}: {ratio}, expected {expected}");
         }
     }
     for count in [3, 6] {
@@ -68,7 +68,7 @@ fn closed_points_use_neighbors_across_the_seam() {
 }
 
 #[test]
-fn bad_points_and_parameters_are_named() {
+fn errors_name_the_invalid_point_or_parameter() {
     let make = |points: &[DVec3], rule: TangentRule<'_>| match Spine::from_points(points.to_vec(), false, rule) {
         Err(SpineError::Tangent(error)) => error,
         other => panic!("{other:?}"),
@@ -77,7 +77,7 @@ fn bad_points_and_parameters_are_named() {
     for rule in [TangentRule::Automatic, TangentRule::ArcLength, TangentRule::Circle] {
         assert_eq!(make(&repeated, rule), TangentError::RepeatedPoint { index: 1, next: 2 });
     }
-    // Back and forth on a line: the central difference vanishes.
+    // The points reverse on a line: the central difference is zero.
     let cusp = [DVec3::X, DVec3::ZERO, DVec3::X];
     assert_eq!(make(&cusp, TangentRule::Uniform), TangentError::Undetermined { index: 1 });
     assert_eq!(make(&cusp, TangentRule::Circle), TangentError::Undetermined { index: 1 });

@@ -1,6 +1,6 @@
-//! The torus knot of Wang et al. 2008, equation (16): golden frames from 40-digit arithmetic, tables III and IV,
-//! orders.
-#![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
+//! The torus knot of Wang et al. 2008, equation (16): golden frames from 40-digit arithmetic, tables III and IV, and
+//! orders of convergence.
+#![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
@@ -10,7 +10,7 @@ use isochore_curve::{
     reflect_twice, rotation_minimizing_frames, runge_kutta_frames, uniform_parameters,
 };
 
-/// Golden vectors are given to 17 digits; a hundred steps of rounding stay far below this.
+/// Golden vectors have 17 digits. The rounding of a hundred steps is far below this.
 const GOLDEN: f64 = 1e-13;
 
 fn knot() -> TrigonometricCurve {
@@ -27,7 +27,7 @@ fn sampled(segments: usize, method: FrameMethod) -> Vec<Frame> {
     frames(&Spine::sample(&knot(), segments).unwrap(), method)
 }
 
-/// An open spine over the whole turn, whose last point is the first: the setting of the published tables.
+/// Points of an open spine over the whole turn, as in the published tables. Its last point equals the first.
 fn open_points(segments: usize) -> Vec<DVec3> {
     uniform_parameters(&knot(), segments).iter().map(|&u| knot().position(u)).collect()
 }
@@ -47,23 +47,23 @@ fn double_reflection_has_the_golden_frames() {
 }
 
 #[test]
-fn rivals_have_the_golden_frames() {
+fn other_methods_have_the_golden_frames() {
     let projected = sampled(64, FrameMethod::Projection);
     assert_close(projected[64].r, [0.99522752765425002, 0.074089472282325181, -0.063505261956278727], GOLDEN);
     let rotated = sampled(64, FrameMethod::Rotation);
     assert_close(rotated[64].r, [0.8714327078337857, 0.37242680686603009, -0.31922297731374008], GOLDEN);
 }
 
-/// Angle between a method's last frame and the exact one.
+/// Angle between the last frame of a method and the exact frame.
 fn end_error(last: Frame) -> f64 {
     let exact = exact_frames(&knot(), &[0.0, TAU], -DVec3::X).unwrap()[1];
     exact.angle_to(last.r).abs()
 }
 
 #[test]
-fn errors_of_double_reflection_and_rivals_are_those_of_the_tables() {
-    // Segments, then double reflection, projection and rotation by an independent 40-digit computation. The published
-    // rows agree with all of them but for projection and rotation with 64 segments, which are misprinted.
+fn errors_match_the_published_tables() {
+    // Segments, then the errors of double reflection, projection and rotation from an independent 40-digit computation.
+    // The published rows agree, except for the misprinted values of projection and rotation with 64 segments.
     let rows = [
         (64, 5.09809432627084e-3, 3.63617785478575e-1, 7.78561373660012e-1),
         (128, 3.24009271602405e-4, 9.02970594725578e-2, 1.9108374202716e-1),
@@ -76,8 +76,8 @@ fn errors_of_double_reflection_and_rivals_are_those_of_the_tables() {
             (FrameMethod::Rotation, rotated),
         ] {
             let error = end_error(sampled(segments, method)[segments]);
-            // The exact frame is good to about 1e-13.
-            assert!((error - expected).abs() < 1e-12, "{method:?} {segments}: {error:e} against {expected:e}");
+            // The exact frame is accurate to about 1e-13.
+            assert!((error - expected).abs() < 1e-12, "{method:?} {segments}: {error:e}, expected {expected:e}");
         }
     }
     for (segments, reflected, projected, rotated) in [
@@ -86,7 +86,7 @@ fn errors_of_double_reflection_and_rivals_are_those_of_the_tables() {
         (2048, 4.972283e-9, 3.523541e-4, 7.417987e-4),
     ] {
         let error = |method| end_error(sampled(segments, method)[segments]);
-        // Half a unit of the seventh digit, and 1e-13 of the exact frame.
+        // Half a unit of the seventh digit, plus 1e-13 for the exact frame.
         for (method, expected) in [
             (FrameMethod::DoubleReflection, reflected),
             (FrameMethod::Projection, projected),
@@ -98,12 +98,12 @@ fn errors_of_double_reflection_and_rivals_are_those_of_the_tables() {
 }
 
 #[test]
-fn runge_kutta_errors_are_those_of_the_table() {
+fn runge_kutta_errors_match_the_table() {
     let error = |segments| {
         let parameters = uniform_parameters(&knot(), segments);
         end_error(runge_kutta_frames(&knot(), &parameters, -DVec3::X).unwrap()[segments])
     };
-    // Published to three digits; 64 and 128 segments are published 0.8 and 0.4 percent lower.
+    // Published with three digits. The published values for 64 and 128 segments are 0.8 and 0.4 percent lower.
     for (segments, expected, bound) in [
         (64, 3.6078e-2, 5e-7),
         (128, 2.3299e-3, 5e-8),
@@ -112,11 +112,11 @@ fn runge_kutta_errors_are_those_of_the_table() {
         (1024, 5.680612e-7, 6e-13),
         (2048, 3.546587e-8, 1.5e-13),
     ] {
-        assert!((error(segments) - expected).abs() < bound, "{segments}: {:e} against {expected:e}", error(segments));
+        assert!((error(segments) - expected).abs() < bound, "{segments}: {:e}, expected {expected:e}", error(segments));
     }
 }
 
-/// Error ratios of doubled samples: 1/16 for fourth order and 1/4 for second, as h tends to zero.
+/// Error ratios for doubled samples: 1/16 for fourth order and 1/4 for second order, as h tends to zero.
 #[test]
 fn orders_are_four_four_two_two() {
     let ratio = |method| {
@@ -169,7 +169,8 @@ fn estimated_tangents_are_of_fourth_order() {
             .map(|(&u, tangent)| tangent.distance(knot().jet(u).tangent()))
             .fold(0.0, f64::max)
     };
-    // Three digits given. The paper claims the fifth order, which the weighted sum has but not its direction.
+    // The reference values have three digits. The paper claims fifth order, which applies to the weighted sum but not to
+    // its direction.
     for (segments, expected, unit) in [(256, 1.12e-4, 1e-6), (1024, 3.27e-7, 1e-9), (2048, 2.00e-8, 1e-10)] {
         assert!((error(segments) - expected).abs() < 0.51 * unit, "{segments}: {:e}", error(segments));
     }
@@ -207,12 +208,12 @@ fn tangents_only_are_of_fourth_order() {
         let jets = uniform_parameters(&knot(), segments).into_iter().map(|u| knot().jet(u));
         let spine = Spine::from_jets(jets, false).unwrap();
         let error = largest_error(&frames(&spine, FrameMethod::TangentsOnly), segments);
-        assert!((error / expected - 1.0).abs() < 1e-4, "{segments}: {error:e} against {expected:e}");
+        assert!((error / expected - 1.0).abs() < 1e-4, "{segments}: {error:e}, expected {expected:e}");
     }
 }
 
-/// The formulas at the two ends, which the papers leave out, need three tangents for the fourth order: an end segment
-/// is carried once, so its error is of the order of the whole.
+/// The formulas for the two ends, which the papers omit, need three tangents for fourth order: each end segment occurs
+/// once, so its error has the order of the whole.
 #[test]
 fn two_tangents_at_the_ends_lose_an_order() {
     let ratio = |end_chord: fn([DVec3; 3]) -> DVec3| {
@@ -227,7 +228,7 @@ fn two_tangents_at_the_ends_lose_an_order() {
     let two = ratio(|[first, second, _]| first + second);
     assert!((two - 0.125).abs() < 0.005, "third order: {two}");
     let three = ratio(|[first, second, third]| 5.0 * first + 8.0 * second - third);
-    assert!(three < 0.065, "fourth order, or the fifth at this point of symmetry: {three}");
+    assert!(three < 0.065, "fourth order, or fifth order at this point of symmetry: {three}");
 }
 
 #[test]
@@ -251,13 +252,13 @@ fn estimated_tangents_keep_the_published_errors() {
             let error = error(points, closed, rule);
             assert!(
                 (error / expected - 1.0).abs() < 0.006,
-                "{segments} {rule:?} {closed}: {error:e} against {expected:e}"
+                "{segments} {rule:?} {closed}: {error:e}, expected {expected:e}"
             );
         }
     }
 }
 
-/// Points at random spacing: uniform steps with 35 percent jitter.
+/// Randomly spaced parameters: uniform steps with 35 percent jitter.
 fn jittered_parameters(segments: usize) -> Vec<f64> {
     let mut state = 12345u64;
     let step = TAU / segments as f64;
@@ -271,7 +272,7 @@ fn jittered_parameters(segments: usize) -> Vec<f64> {
 }
 
 #[test]
-fn jittered_points_are_recognized_and_stay_of_fourth_order() {
+fn jittered_points_are_recognized_and_converge_with_fourth_order() {
     let error = |segments: usize, rule| {
         let points = jittered_parameters(segments).iter().map(|&u| knot().position(u)).collect();
         let spine = Spine::from_points(points, false, rule).unwrap();
@@ -279,30 +280,30 @@ fn jittered_points_are_recognized_and_stay_of_fourth_order() {
         let exact = exact_frames(&knot(), &[0.0, TAU], -DVec3::X).unwrap()[1];
         last.r.distance(exact.r)
     };
-    // Uniform stencils do not converge on them; the automatic choice sees that, and gets what arc lengths get.
+    // Uniform stencils do not converge on these points. The automatic rule detects this and uses arc lengths.
     let points = jittered_parameters(2048).iter().map(|&u| knot().position(u)).collect();
     let uniform = Spine::from_points(points, false, TangentRule::Uniform).unwrap();
-    let refused =
+    let result =
         rotation_minimizing_frames(&uniform, -DVec3::X, FrameMethod::DoubleReflection, DegenerateSegment::Refuse);
-    assert!(matches!(refused, Err(FrameError::DegenerateSegment { .. })), "some tangents even point backwards");
+    assert!(matches!(result, Err(FrameError::DegenerateSegment { .. })), "some tangents are reversed");
     assert_eq!(error(2048, TangentRule::Automatic), error(2048, TangentRule::ArcLength));
-    // About 4e-8 expected; a second-order method would be at 1e-4.
+    // The expected error is about 4e-8. A second-order method would have 1e-4.
     assert!(error(2048, TangentRule::Automatic) < 2e-7, "{:e}", error(2048, TangentRule::Automatic));
     let parameters = jittered_parameters(2048);
     assert!(error(2048, TangentRule::Parameters(&parameters)) < 1e-7);
-    // Random spacing scatters the ratio about 1/16.
+    // Random spacing makes the ratio vary around 1/16.
     let ratio = error(2048, TangentRule::Automatic) / error(1024, TangentRule::Automatic);
     assert!((0.02..0.15).contains(&ratio), "{ratio}");
     let circle = error(2048, TangentRule::Circle) / error(1024, TangentRule::Circle);
     assert!((0.15..0.4).contains(&circle), "second order: {circle}");
-    // Uniform samples are recognized as such.
+    // Uniform samples are recognized.
     let uniform = Spine::from_points(open_points(64), false, TangentRule::Uniform).unwrap();
     assert_eq!(Spine::from_points(open_points(64), false, TangentRule::Automatic).unwrap(), uniform);
 }
 
 #[test]
 fn second_reflection_is_well_away_from_zero_on_coarse_samples() {
-    // c₂/4 of the paper; the smallest values for 8, 16, 32 and 64 samples.
+    // Smallest values of c₂/4 of the paper for 8, 16, 32 and 64 samples.
     for (segments, expected) in [(8, 0.228), (16, 0.735), (32, 0.976), (64, 0.998)] {
         let spine = Spine::sample(&knot(), segments).unwrap();
         let smallest = (0..segments)
@@ -318,17 +319,17 @@ fn second_reflection_is_well_away_from_zero_on_coarse_samples() {
 }
 
 #[test]
-fn quarter_turns_of_the_knot_start_anywhere() {
-    // The exact frame of a part is the exact frame of the whole, turned: a check of intervals that do not start at
-    // zero.
+fn exact_frames_do_not_depend_on_the_start() {
+    // The exact frame of a part equals that of the whole up to a constant rotation. This checks intervals that do not
+    // start at zero.
     let whole = exact_frames(&knot(), &[0.0, FRAC_PI_4, 3.0], -DVec3::X).unwrap();
     let part = exact_frames(&knot(), &[FRAC_PI_4, 3.0], whole[1].r).unwrap();
     assert!(part[1].r.distance(whole[2].r) < 1e-13);
 }
 
 #[test]
-fn the_rate_against_a_fixed_direction_converges_spectrally() {
-    // A direction that stays away from every reversed tangent: the least 1 + a · t is near its best, 0.2247.
+fn the_rate_relative_to_a_fixed_direction_converges_spectrally() {
+    // A direction far from all reversed tangents: the minimum of 1 + a · t is near its optimum, 0.2247.
     let fixed = DVec3::new(-0.025, 0.005, -1.0).normalize();
     let least =
         (0..5000).map(|i| 1.0 + fixed.dot(knot().jet(TAU * f64::from(i) / 5000.0).tangent())).fold(2.0, f64::min);
@@ -340,12 +341,12 @@ fn the_rate_against_a_fixed_direction_converges_spectrally() {
             fixed.dot(tangent.cross(jet.tangent_derivative())) / (1.0 + fixed.dot(tangent))
         };
         let total = (0..count).map(rate).sum::<f64>() * TAU / f64::from(count);
-        // The negative of the integral, in (−2π, 0].
+        // Reduce the negative integral to (−2π, 0].
         (-total).rem_euclid(TAU) - TAU
     };
     let exact = -2.87571199786589409;
-    // The plain trapezoid rule on a periodic function: doubling the samples doubles the digits, down to the rounding of
-    // a sum of 35 over 400 terms.
+    // The trapezoid rule on a periodic function: doubling the samples doubles the digits, down to the rounding of a sum
+    // of 400 terms with the value 35.
     assert!((closing(100) - exact).abs() < 1e-4 && (closing(200) - exact).abs() < 1e-8);
     assert!((closing(400) - exact).abs() < 1e-13 && (closing(800) - exact).abs() < 1e-13);
 }

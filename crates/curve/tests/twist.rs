@@ -1,5 +1,5 @@
-//! Twist laws on the torus knot and the cinquefoil: golden closing angles, laws, turns and constraints.
-#![allow(clippy::excessive_precision, reason = "golden values are kept with the digits they were computed to")]
+//! Twist on the torus knot and the cinquefoil: golden closing angles, laws, turns and constraints.
+#![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use std::f64::consts::{PI, TAU};
 
@@ -31,19 +31,19 @@ fn closing_angles_are_golden() {
     }
     let cinquefoil = TrigonometricCurve::cinquefoil();
     assert!((closing(&cinquefoil, 128) + 1.40770454955428289).abs() < 2e-13);
-    // The exact ones, by quadrature and by extrapolation of double reflection.
+    // The exact angles, by quadrature and by extrapolation of double reflection.
     for (curve, exact) in [(&torus, -2.87571199786589409), (&cinquefoil, -1.40770198936073335)] {
         let (first, last) = curve.domain();
         let frames = exact_frames(curve, &[first, last], curve.jet(first).normal().unwrap()).unwrap();
         assert!((closing_angle(&frames) - exact).abs() < 1e-12);
         let extrapolated = (16.0 * closing(curve, 2048) - closing(curve, 1024)) / 15.0;
-        assert!((extrapolated - exact).abs() < 3e-12, "{extrapolated} against {exact}");
+        assert!((extrapolated - exact).abs() < 3e-12, "{extrapolated}, exact {exact}");
     }
 }
 
-/// The least rotation changes sign as samples get finer when the angle is near half a turn.
+/// If the closing angle is near half a turn, the smallest rotation changes sign as samples get finer.
 #[test]
-fn the_branch_of_the_least_twist_depends_on_the_samples() {
+fn the_sign_of_the_smallest_twist_depends_on_the_samples() {
     let torus = TrigonometricCurve::torus_knot();
     for (segments, expected) in [(12, 0.451), (16, 2.374), (20, 2.953), (24, -3.105), (32, -2.952)] {
         assert!((closing(&torus, segments) - expected).abs() < 6e-4, "{segments}");
@@ -66,8 +66,8 @@ fn closed_frames_have_the_golden_angles() {
     for law in [TwistLaw::ArcLength, TwistLaw::Curvature] {
         for turns in -2..=2 {
             let closed = close_frames(&spine, &frames, law, turns).stations;
-            assert!(closed[64].r.distance(closed[0].r) < 1e-14, "closes");
-            // By symmetry of the knot under a half turn about x.
+            assert!(closed[64].r.distance(closed[0].r) < 1e-14, "the frames close");
+            // The knot is symmetric under a half turn about x.
             let half = if turns % 2 == 0 { -DVec3::X } else { DVec3::X };
             assert!(closed[32].r.distance(half) < 1e-13, "{turns} {law:?}: {}", closed[32].r);
         }
@@ -85,12 +85,12 @@ fn each_law_minimizes_its_own_functional() {
     ] {
         let by_arc = close_frames(&spine, &frames, TwistLaw::ArcLength, turns).angles;
         let by_turning = close_frames(&spine, &frames, TwistLaw::Curvature, turns).angles;
-        // Sums over chords converge with second order: about h² κ²/24 relative, 2e-5 here.
+        // Sums over chords converge with second order: the relative error is about h² κ²/24 = 2e-5.
         assert!((total_angular_speed(&spine, &by_turning) / least - 1.0).abs() < 2e-5);
         assert!((total_squared_angular_speed(&spine, &by_arc) / least_squared - 1.0).abs() < 2e-5);
         assert!(total_angular_speed(&spine, &by_turning) < total_angular_speed(&spine, &by_arc));
         assert!(total_squared_angular_speed(&spine, &by_arc) < total_squared_angular_speed(&spine, &by_turning));
-        // Closed forms of the minima in the total curvature and the whole twist.
+        // Closed forms of the minima, from the total curvature and the total twist.
         let twist = -2.87571199786589409 + TAU * f64::from(turns);
         assert!((libm::hypot(total_curvature(&torus), twist) - least).abs() < 1e-12);
         let squared = total_squared_curvature(&torus) + twist * twist / length(&torus);
@@ -113,7 +113,7 @@ fn end_directions_are_met() {
 }
 
 #[test]
-fn straight_spines_take_the_curvature_law_by_arc_length() {
+fn straight_spines_replace_the_curvature_law_by_arc_length() {
     let points: Vec<DVec3> = [0.0, 1.0, 4.0].map(|x| DVec3::X * x).to_vec();
     let spine = Spine::new(points, vec![DVec3::X; 3], false).unwrap();
     assert_eq!(twist_fractions(&spine, TwistLaw::Curvature), [0.0, 0.25, 1.0]);
@@ -141,9 +141,9 @@ fn six_constraints_are_met_and_the_frame_closes() {
         assert!(frame.r.distance(up) < 1e-13, "station {station}");
     }
     assert!(twisted.stations[300].r.distance(twisted.stations[0].r) < 1e-13);
-    // Linear in arc length between neighbors, also across the first station.
-    let shares = twist_fractions(&spine, TwistLaw::ArcLength);
-    let rate = |i: usize| (twisted.angles[i + 1] - twisted.angles[i]) / (shares[i + 1] - shares[i]);
+    // The twist is linear in arc length between neighbors, also across the first station.
+    let fractions = twist_fractions(&spine, TwistLaw::ArcLength);
+    let rate = |i: usize| (twisted.angles[i + 1] - twisted.angles[i]) / (fractions[i + 1] - fractions[i]);
     assert!((rate(10) - rate(50)).abs() < 1e-9 && (rate(2) - rate(290)).abs() < 1e-9);
 }
 
@@ -155,7 +155,7 @@ fn constraints_unwrap_from_the_first() {
     let stations: Vec<usize> = (0..6).collect();
     let constraints = constraints_at(&stations, &[DVec3::Z; 6]);
     let twisted = meet_constraints(&spine, &frames, &constraints, TwistLaw::ArcLength).unwrap();
-    // At u = 0 the z axis is a quarter turn from the normal −x, about the tangent.
+    // At u = 0, the z axis is a quarter turn about the tangent from the normal −x.
     assert!((twisted.angles[0] - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
     for pair in twisted.angles[..6].windows(2) {
         assert!((pair[1] - pair[0]).abs() <= PI);
@@ -167,7 +167,7 @@ fn constraints_unwrap_from_the_first() {
 }
 
 #[test]
-fn open_spines_keep_the_outer_angles() {
+fn open_spines_have_constant_twist_beyond_the_constraints() {
     let helix = TrigonometricCurve::helix(1.0, 0.4, (0.0, 9.0));
     let (spine, frames) = reflected(&helix, 90);
     let mut constraints = constraints_at(&[30, 60], &[DVec3::Z; 2]);
@@ -188,7 +188,7 @@ fn open_spines_keep_the_outer_angles() {
 }
 
 #[test]
-fn spreading_nothing_changes_nothing() {
+fn zero_twist_does_not_change_frames() {
     let (spine, frames) = reflected(&TrigonometricCurve::torus_knot(), 20);
     assert_eq!(spread(&spine, &frames, 0.0, TwistLaw::Curvature).stations, frames);
 }

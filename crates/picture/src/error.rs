@@ -15,7 +15,7 @@ pub enum PictureError {
         /// Requested samples per pixel, in each direction.
         samples: usize,
     },
-    /// There are no panels, or the panels and their captions do not fit into the picture.
+    /// The list of panels is empty, or the panels and their captions do not fit into the picture.
     #[error("{panels} panels with their captions do not fit into the picture")]
     Panels {
         /// Number of panels.

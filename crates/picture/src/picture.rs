@@ -86,7 +86,7 @@ impl Picture {
 ///
 /// # Errors
 /// - [`PictureError::Size`] if the picture is empty or too large.
-/// - [`PictureError::Panels`] if there are no panels or they do not fit.
+/// - [`PictureError::Panels`] if `panels` is empty or the panels do not fit.
 /// - [`PictureError::Index`] if a triangle uses a vertex that does not exist.
 /// - [`PictureError::Colors`] if a list of colors does not have one color per element.
 ///

@@ -6,7 +6,8 @@ use super::{MoebiusSegment, Tilt};
 use crate::curve::{jet_of_segments, joints};
 use crate::{Curve, CurveJet, Frame, FrameError, HermiteError, Spine, uniform_parameters};
 
-/// Rational curves of degree six with continuous tangent and a continuous rational rotation-minimizing frame.
+/// A spline of rational curves of degree six, with a continuous tangent and a continuous rational
+/// rotation-minimizing frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MoebiusSpline {
     segments: Vec<MoebiusSegment>,
@@ -14,12 +15,13 @@ pub struct MoebiusSpline {
 }
 
 impl MoebiusSpline {
-    /// Interpolates points and tangents of `curve` at `segments` equal steps of its parameter: third order in position
-    /// and frame between the joints, fourth at the joints; with [`Tilt::WhenNeeded`] fourth order in position
-    /// throughout.
+    /// Interpolates points and tangents of `curve` at `segments` equal steps of its parameter.
+    ///
+    /// Position and frame are of third order between the joints and of fourth order at the joints. With
+    /// [`Tilt::WhenNeeded`], the position is of fourth order everywhere.
     ///
     /// # Errors
-    /// The first segment without a solution.
+    /// [`HermiteError`] with the first segment that has no solution.
     pub fn interpolate(curve: &impl Curve, segments: usize, tilt: Tilt) -> Result<Self, HermiteError> {
         let jets: Vec<CurveJet> = uniform_parameters(curve, segments).iter().map(|&u| curve.jet(u)).collect();
         let segments = jets
@@ -33,10 +35,10 @@ impl MoebiusSpline {
         Ok(Self { segments, closed: curve.is_closed() })
     }
 
-    /// Passes through the points of `spine` with its tangents.
+    /// Interpolates the points and tangents of `spine`.
     ///
     /// # Errors
-    /// The first segment without a solution.
+    /// [`HermiteError`] with the first segment that has no solution.
     pub fn through(spine: &Spine, tilt: Tilt) -> Result<Self, HermiteError> {
         let segments = (0..spine.segments())
             .map(|i| {
@@ -58,21 +60,21 @@ impl MoebiusSpline {
         &self.segments
     }
 
-    /// Points and rotation-minimizing frames at `samples` equal parameter steps in each segment, and at the end.
+    /// Points with rotation-minimizing frames, at `samples` equal parameter steps per segment, ends included.
     ///
     /// # Errors
-    /// [`FrameError::Reference`] where `reference` is along the first tangent.
+    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
     ///
     /// # Panics
     /// If `samples` is zero.
     pub fn frames(&self, reference: DVec3, samples: usize) -> Result<Vec<(DVec3, Frame)>, FrameError> {
-        assert!(samples > 0, "at least one sample a segment");
+        assert!(samples > 0, "at least one sample per segment");
         let parameters: Vec<f64> = (0..=samples).map(|i| i as f64 / samples as f64).collect();
         let mut r = reference;
         let mut all: Vec<(DVec3, Frame)> = Vec::with_capacity(self.segments.len() * samples + 1);
         for segment in &self.segments {
             let frames = segment.frames(&parameters, r)?;
-            // The last frame of a segment is the first of the next.
+            // The last frame of a segment equals the first of the next.
             all.pop();
             all.extend(parameters.iter().zip(&frames).map(|(&u, &frame)| (segment.position(u), frame)));
             r = frames[samples].r;
@@ -81,7 +83,7 @@ impl MoebiusSpline {
     }
 }
 
-/// Segment number plus the parameter inside the segment.
+/// The parameter is the segment number plus the parameter within the segment.
 impl Curve for MoebiusSpline {
     fn domain(&self) -> (f64, f64) {
         (0.0, self.segments.len() as f64)

@@ -1,19 +1,19 @@
 //! G¹ Hermite interpolation by Pythagorean-hodograph cubics.
 //!
-//! Source: Mäurer and Jüttler 1999, table 1. The absolute values |λ₁| and |λ₂| printed there hold only for λ₁ > 0 > λ₂;
-//! with signed values the quadratic equation holds for all data. Differences of nearly equal tangents are taken first,
-//! so that short arcs keep their digits.
+//! Source: Mäurer and Jüttler 1999, table 1. Correction: the printed absolute values |λ₁| and |λ₂| are valid only
+//! for λ₁ > 0 > λ₂. With signed values, the quadratic equation is valid for all data. Differences of nearly
+//! equal tangents are computed first, so that short arcs keep their digits.
 
 use glam::DVec3;
 
 use super::PhCubic;
 use crate::spline::COORDINATE_LIMIT;
 
-/// Why end points and tangents have no Pythagorean-hodograph cubic.
+/// Errors when interpolating end points and tangents.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PhCubicError {
     /// A coordinate is NaN, infinite or beyond 1e50.
-    #[error("an end point or tangent has a coordinate that is not a finite number of ordinary size")]
+    #[error("an end point or tangent has a coordinate that is NaN, infinite or beyond 1e50")]
     NotFinite,
     /// The end points coincide.
     #[error("the end points coincide")]
@@ -27,41 +27,47 @@ pub enum PhCubicError {
         /// Discriminant of the equation, model units squared.
         discriminant: f64,
     },
-    /// Every cubic with these ends leaves or arrives against a tangent.
-    #[error("every Pythagorean-hodograph cubic with these end points runs against one of the tangents")]
+    /// Every cubic with these ends has a reversed end tangent.
+    #[error("every Pythagorean-hodograph cubic with these ends has a reversed tangent")]
     WrongDirection,
-    /// The tangents are parallel but not along the chord, which asks for an inflection.
+    /// The tangents are parallel to each other but not to the chord, which requires an inflection.
     #[error(
-        "parallel tangents that are not along the chord ask for an inflection, which no Pythagorean-hodograph cubic has"
+        "parallel tangents that are not parallel to the chord require an inflection, and a Pythagorean-hodograph cubic \
+         does not have one"
     )]
     ParallelTangents,
 }
 
-/// A segment between two samples that has no curve of the wanted kind.
+/// Error when interpolating samples: a segment without a solution.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("segment {segment}: {reason}")]
 pub struct HermiteError {
     /// The segment, counted from zero.
     pub segment: usize,
-    /// Why it has none.
+    /// Reason of the failure.
     pub reason: PhCubicError,
 }
 
-/// Tangents that differ by less are parallel. Larger: flat arcs are taken for lines. Smaller: rounding of the tangents
-/// passes as their difference.
+/// Largest difference of parallel tangents. Larger: flat arcs are treated as lines. Smaller: rounding of the
+/// tangents counts as a difference.
 const PARALLEL: f64 = 1e-14;
 
-/// A chord whose sine against parallel tangents is below this is along them: the curve is a line. Larger: slight
-/// S-shapes become lines. Smaller: lines with rounded coordinates are refused.
+/// Largest sine of the angle between the chord and parallel tangents of a line. Larger: slight S-shapes become
+/// lines. Smaller: lines with rounded coordinates are rejected.
 const ALONG: f64 = 1e-12;
 
 impl PhCubic {
-    /// The cubic from `start` to `end` with the directions of the given tangents: of two solutions that leave and
-    /// arrive in the right direction, the one with the shorter control polygon.
+    /// Interpolates two end points and the directions of their tangents. If two solutions follow both tangents,
+    /// returns the one with the shorter control polygon.
+    ///
+    /// Most data with strong turning have no solution. Sufficiently dense samples of a smooth curve without
+    /// inflections have one, with an error of fourth order.
     ///
     /// # Errors
-    /// Bad input, and data without a solution. Most data with strong turning have none; samples of a smooth curve
-    /// without inflection have one as soon as they are dense enough, with an error of fourth order.
+    /// - [`PhCubicError::NotFinite`], [`PhCubicError::RepeatedPoint`] or [`PhCubicError::ZeroTangent`] if the
+    ///   input is invalid.
+    /// - [`PhCubicError::NoRealRoot`], [`PhCubicError::WrongDirection`] or [`PhCubicError::ParallelTangents`] if
+    ///   the data have no solution.
     pub fn hermite(start: DVec3, end: DVec3, start_tangent: DVec3, end_tangent: DVec3) -> Result<Self, PhCubicError> {
         for vector in [start, end, start_tangent, end_tangent] {
             if !(vector.is_finite() && vector.abs().max_element() <= COORDINATE_LIMIT) {
@@ -74,14 +80,14 @@ impl PhCubic {
         }
         let t0 = start_tangent.try_normalize().ok_or(PhCubicError::ZeroTangent)?;
         let t1 = end_tangent.try_normalize().ok_or(PhCubicError::ZeroTangent)?;
-        let make = |[first, last]: [f64; 2]| {
+        let cubic = |[first, last]: [f64; 2]| {
             let (departure, arrival) = (t0 * first, t1 * last);
             Self::from_sides(start, [departure, chord - departure - arrival, arrival])
         };
         outer_lengths(chord, t0, t1)?
             .into_iter()
             .filter(|&[first, last]| first > 0.0 && last > 0.0 && first.is_finite() && last.is_finite())
-            .map(make)
+            .map(cubic)
             .min_by(|a, b| a.polygon_length().total_cmp(&b.polygon_length()))
             .ok_or(PhCubicError::WrongDirection)
     }
@@ -90,8 +96,8 @@ impl PhCubic {
 /// Candidates for the lengths (L₁, L₃) of the outer sides of the control polygon, signed along the tangents.
 fn outer_lengths(chord: DVec3, t0: DVec3, t1: DVec3) -> Result<[[f64; 2]; 2], PhCubicError> {
     let sum = t0 + t1;
-    // Sum and difference of unit vectors are normal to each other. Saying so again removes the rounding of the lengths,
-    // which on short arcs is larger than the part of the difference along the curve.
+    // Sum and difference of unit vectors are orthogonal. Orthogonalizing again removes the rounding of their
+    // lengths, which on short arcs exceeds the component of the difference along the curve.
     let difference = (t1 - t0) - sum * ((t1 - t0).dot(sum) / sum.length_squared().max(f64::MIN_POSITIVE));
     // 1 − c and 1 + c for c = t₀ · t₁, without cancellation.
     let minus = 0.5 * difference.length_squared();
@@ -106,8 +112,8 @@ fn outer_lengths(chord: DVec3, t0: DVec3, t1: DVec3) -> Result<[[f64; 2]; 2], Ph
         };
     }
     if sum.length() < PARALLEL {
-        // A planar turn by half a circle, where the general equation degenerates: L₁ − L₃ is the chord along t₀ and
-        // L₁L₃ the square of the chord across it.
+        // A planar turn by half a circle, for which the general equation degenerates. L₁ − L₃ is the component of
+        // the chord along t₀, and L₁L₃ is the square of the component across it.
         let along = chord.dot(t0);
         let root = libm::hypot(along, 2.0 * chord.reject_from_normalized(t0).length());
         let first = 0.5 * (along + root);

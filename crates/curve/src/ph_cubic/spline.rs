@@ -1,68 +1,83 @@
-//! Splines of Pythagorean-hodograph cubics that follow a curve to a tolerance.
+//! Splines of Pythagorean-hodograph cubics that approximate a curve within a tolerance.
 
 use super::{HermiteError, PhCubic, PhCubicError};
 use crate::curve::{jet_of_segments, joints};
 use crate::quadrature::gauss;
 use crate::{Curve, CurveJet, Frame, FrameError, Spine, orthogonal_reference};
 
-/// Halvings of a smooth piece of the curve at most. More only help tolerances near rounding.
+/// Largest number of halvings of a smooth piece of the curve. Larger: useful only for tolerances near rounding
+/// error. Smaller: tight tolerances fail.
 const DEPTH: u32 = 24;
 
-/// Points of a cubic compared with the curve. Fewer can miss a bulge: the error has at most three between the ends.
+/// Points of a cubic that are compared with the curve. Larger: more time. Smaller: a local maximum of the error
+/// can be missed; there are at most three between the ends.
 const CHECKS: usize = 9;
 
-/// Turning of the curve over one segment, radians, at most. Larger: few points compare long arcs, and a short cut
-/// between two branches of a knot passes. Smaller: more segments than a loose tolerance needs.
+/// Largest turning of the curve over one segment, radians. Larger: the points are too few for long arcs, and a
+/// shortcut between two branches of a knot is accepted. Smaller: more segments than a loose tolerance needs.
 const LARGEST_TURNING: f64 = 1.2;
 
-/// Newton steps that bring a point of the curve opposite to a point of the cubic; the first guess is off by third
-/// order.
+/// Newton steps that move a point of the curve into the normal plane of the cubic. Larger: no effect. Smaller:
+/// the distance is overestimated; the error of the initial guess is of third order.
 const NEWTON_STEPS: usize = 8;
 
 /// A curve of [`PhCubic`] segments with continuous tangent.
+///
+/// # Examples
+/// ```
+/// use isochore_curve::{PhSpline, TrigonometricCurve, length};
+///
+/// let knot = TrigonometricCurve::torus_knot();
+/// let spline = PhSpline::follow(&knot, 1e-3)?;
+/// assert!(spline.error() <= 1e-3);
+/// assert!((spline.length() - length(&knot)).abs() < 1e-2);
+/// # Ok::<(), isochore_curve::PhSplineError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhSpline {
     segments: Vec<PhCubic>,
     /// Parameters of the original curve at the joints.
     parameters: Vec<f64>,
-    /// Largest distance found between the two curves.
+    /// Largest distance between the two curves at the compared points.
     error: f64,
     closed: bool,
 }
 
-/// Why a curve has no spline of Pythagorean-hodograph cubics.
+/// Errors when approximating a curve by Pythagorean-hodograph cubics.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PhSplineError {
     /// The tolerance is not a positive number.
     #[error("the tolerance {tolerance} is not a positive number")]
     Tolerance {
-        /// The tolerance given.
+        /// The tolerance.
         tolerance: f64,
     },
-    /// A segment has no cubic however short.
-    #[error("near parameter {parameter} no segment is short enough: {reason}")]
+    /// Even the shortest segment has no cubic.
+    #[error("near parameter {parameter}, even the shortest segment has no cubic: {reason}")]
     Segment {
         /// Parameter of the original curve.
         parameter: f64,
-        /// Why the last and shortest segment failed.
+        /// Reason for the failure of the shortest segment.
         reason: PhCubicError,
     },
-    /// The tolerance is not reached however short the segments.
-    #[error("near parameter {parameter} the distance is still {error}")]
+    /// Even the shortest segment exceeds the tolerance.
+    #[error("near parameter {parameter}, the distance of the shortest segment is {error}, above the tolerance")]
     Accuracy {
         /// Parameter of the original curve.
         parameter: f64,
-        /// Distance reached.
+        /// Distance of the shortest segment, model units.
         error: f64,
     },
 }
 
 impl PhSpline {
-    /// Follows `curve` within `tolerance` model units, by halving its parameter intervals until each has a cubic close
-    /// enough. Intervals are cut where the curvature vanishes, since the cubics have no inflection.
+    /// Approximates `curve` within `tolerance` model units. Parameter intervals are halved until the cubic of each
+    /// is close enough. Intervals are split at points of zero curvature, because the cubics have no inflections.
     ///
     /// # Errors
-    /// A bad tolerance, and places that defeat every length of segment, as cusps do.
+    /// - [`PhSplineError::Tolerance`] if `tolerance` is not positive and finite.
+    /// - [`PhSplineError::Segment`] or [`PhSplineError::Accuracy`] if the shortest segment fails, for example at a
+    ///   cusp.
     pub fn follow(curve: &impl Curve, tolerance: f64) -> Result<Self, PhSplineError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(PhSplineError::Tolerance { tolerance });
@@ -71,7 +86,7 @@ impl PhSpline {
         let mut spline =
             Self { segments: Vec::new(), parameters: vec![breaks[0]], error: 0.0, closed: curve.is_closed() };
         for pair in breaks.windows(2) {
-            // Two parts at least, so that a closed curve is not one segment from a point to itself.
+            // Use at least two parts, because one segment of a closed curve would join a point to itself.
             let middle = 0.5 * (pair[0] + pair[1]);
             spline.extend(curve, pair[0], middle, tolerance, DEPTH)?;
             spline.extend(curve, middle, pair[1], tolerance, DEPTH)?;
@@ -82,7 +97,7 @@ impl PhSpline {
     /// Interpolates `curve` at `segments` equal steps of its parameter.
     ///
     /// # Errors
-    /// The first segment without a cubic.
+    /// [`HermiteError`] with the first segment that has no cubic.
     pub fn interpolate(curve: &impl Curve, segments: usize) -> Result<Self, HermiteError> {
         let parameters = crate::uniform_parameters(curve, segments);
         let mut cubics = Vec::with_capacity(segments);
@@ -96,11 +111,11 @@ impl PhSpline {
         Ok(Self { segments: cubics, parameters, error, closed: curve.is_closed() })
     }
 
-    /// Passes through the points of `spine` with its tangents; its parameters are the stations, and its error is zero,
-    /// since there is nothing between the points to compare with.
+    /// Interpolates the points and tangents of `spine`. The parameters are the stations. The error is zero,
+    /// because the spine has no points in between for comparison.
     ///
     /// # Errors
-    /// The first segment without a cubic.
+    /// [`HermiteError`] with the first segment that has no cubic.
     pub fn through(spine: &Spine) -> Result<Self, HermiteError> {
         let segments = (0..spine.segments())
             .map(|i| {
@@ -112,6 +127,7 @@ impl PhSpline {
         Ok(Self { segments, parameters, error: 0.0, closed: spine.is_closed() })
     }
 
+    /// Appends cubics for [start, end], halving the interval at most `depth` times.
     fn extend(
         &mut self,
         curve: &impl Curve,
@@ -148,12 +164,12 @@ impl PhSpline {
         &self.segments
     }
 
-    /// Parameters of the original curve at the joints, one more than segments.
+    /// Parameters of the original curve at the joints. There is one more than there are segments.
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
     }
 
-    /// Largest distance from the original curve over the points compared, model units.
+    /// Largest distance from the original curve at the compared points, model units.
     pub fn error(&self) -> f64 {
         self.error
     }
@@ -163,11 +179,11 @@ impl PhSpline {
         self.segments.iter().map(PhCubic::length).sum()
     }
 
-    /// Exact rotation-minimizing frames with their points, at `samples` equal parameter steps in each segment, and at
-    /// the end.
+    /// Points with exact rotation-minimizing frames, at `samples` equal parameter steps per segment, ends
+    /// included.
     ///
     /// # Errors
-    /// [`FrameError::Reference`] where `reference` is along the first tangent.
+    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
     ///
     /// # Panics
     /// If `samples` is zero.
@@ -176,18 +192,19 @@ impl PhSpline {
         reference: glam::DVec3,
         samples: usize,
     ) -> Result<Vec<(glam::DVec3, Frame)>, FrameError> {
-        assert!(samples > 0, "at least one sample a segment");
+        assert!(samples > 0, "at least one sample per segment");
         let parameters: Vec<f64> = (0..=samples).map(|i| i as f64 / samples as f64).collect();
         let mut r = reference;
         let mut all = Vec::with_capacity(self.segments.len() * samples + 1);
         for segment in &self.segments {
             let frames = segment.exact_frames(&parameters, r)?;
-            // The last frame of a segment is the first of the next.
+            // The last frame of a segment equals the first of the next.
             all.pop();
             all.extend(parameters.iter().zip(&frames).map(|(&v, &frame)| (segment.position(v), frame)));
             r = frames[samples].r;
         }
-        // Tangents of neighbors differ by rounding at the joints; the frames are exactly orthonormal to their own.
+        // At the joints, the tangents of neighboring segments differ by rounding. Make each frame orthonormal to its
+        // own tangent.
         for (_, frame) in &mut all {
             *frame = Frame::new(orthogonal_reference(frame.r, frame.t)?, frame.t);
         }
@@ -195,7 +212,7 @@ impl PhSpline {
     }
 }
 
-/// Segment number plus the parameter inside the segment.
+/// The parameter is the segment number plus the parameter within the segment.
 impl Curve for PhSpline {
     fn domain(&self) -> (f64, f64) {
         (0.0, self.segments.len() as f64)
@@ -218,17 +235,17 @@ fn between(start: &CurveJet, end: &CurveJet) -> Result<PhCubic, PhCubicError> {
     PhCubic::hermite(start.position, end.position, start.first, end.first)
 }
 
-/// Largest distance of the cubic from the interval of the curve that it follows, both compared in the cubic's normal
-/// planes.
+/// Largest distance between the cubic and the interval of the curve that it approximates, measured in the normal
+/// planes of the cubic.
 fn deviation(curve: &impl Curve, cubic: &PhCubic, start: f64, end: f64) -> f64 {
     let whole = cubic.length();
     (1..=CHECKS)
         .map(|i| {
             let v = i as f64 / (CHECKS + 1) as f64;
             let jet = cubic.jet(v);
-            // Start at the same share of the length, then into the normal plane.
-            let share = gauss(&mut |x| cubic.speed(x), 0.0, v) / whole;
-            let mut parameter = start + (end - start) * share;
+            // Start at the same fraction of the length, then move into the normal plane.
+            let fraction = gauss(&mut |x| cubic.speed(x), 0.0, v) / whole;
+            let mut parameter = start + (end - start) * fraction;
             for _ in 0..NEWTON_STEPS {
                 let other = curve.jet(parameter);
                 let along = other.first.dot(jet.first);
@@ -243,7 +260,7 @@ fn deviation(curve: &impl Curve, cubic: &PhCubic, start: f64, end: f64) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Where to cut an interval: at a nearly vanishing curvature inside it, else in the middle.
+/// Parameter at which to split an interval: a point of nearly zero curvature inside it, or else the midpoint.
 fn cut(curve: &impl Curve, start: f64, end: f64) -> f64 {
     let middle = 0.5 * (start + end);
     let at = |i: usize| start + (end - start) * i as f64 / 8.0;
@@ -255,7 +272,7 @@ fn cut(curve: &impl Curve, start: f64, end: f64) -> f64 {
     if curvatures[lowest] > 0.3 * mean || !turns_back {
         return middle;
     }
-    // Golden-section search for the least curvature next to the lowest sample.
+    // Golden-section search for the smallest curvature near the lowest sample.
     let (mut low, mut high) = (at(lowest - 1), at(lowest + 1));
     let golden = 0.618_033_988_749_894_8;
     for _ in 0..80 {
@@ -263,7 +280,7 @@ fn cut(curve: &impl Curve, start: f64, end: f64) -> f64 {
         if curve.jet(a).curvature() <= curve.jet(b).curvature() { high = b } else { low = a }
     }
     let found = 0.5 * (low + high);
-    // Never a sliver, which would not end the recursion.
+    // Avoid slivers: with them, the recursion does not terminate.
     let margin = 0.01 * (end - start);
     if found - start > margin && end - found > margin { found } else { middle }
 }
