@@ -40,7 +40,8 @@ impl TrigonometricCurve {
         &self.terms
     }
 
-    /// The helix (radius cos u, radius sin u, rise u) over `domain`. `rise` is the height gained per radian.
+    /// The helix (radius cos u, radius sin u, rise u) over `domain`. `rise` is the height gained
+    /// per radian.
     pub fn helix(radius: f64, rise: f64, domain: (f64, f64)) -> Self {
         Self::new(vec![term(1.0, [radius, 0.0, 0.0], [0.0, radius, 0.0])], DVec3::new(0.0, 0.0, rise), domain, false)
     }
@@ -163,7 +164,8 @@ pub struct FunctionCurve<F> {
 }
 
 impl<F: Fn(f64) -> CurveJet + Send + Sync> FunctionCurve<F> {
-    /// Creates the curve `function` over `domain`. The derivatives that it returns must match its positions.
+    /// Creates the curve `function` over `domain`. The derivatives that it returns must match its
+    /// positions.
     pub fn new(function: F, domain: (f64, f64), closed: bool) -> Self {
         Self { function, domain, closed }
     }
@@ -223,8 +225,8 @@ mod tests {
         let step = 1e-5;
         for curve in [TrigonometricCurve::torus_knot(), TrigonometricCurve::helix(2.0, 0.3, (0.0, 6.0))] {
             let (before, at, after) = (curve.jet(1.0 - step), curve.jet(1.0), curve.jet(1.0 + step));
-            // Error of central differences: step² f‴/6, with f‴ below 9³ · 9 for the highest frequency, and rounding
-            // 1e-16/step.
+            // Error of central differences: step² f‴/6, with f‴ below 9³ · 9 for the highest
+            // frequency, and rounding 1e-16/step.
             let bound = step * step * 6561.0 / 6.0;
             assert!(((after.position - before.position) / (2.0 * step) - at.first).length() < bound);
             assert!(((after.first - before.first) / (2.0 * step) - at.second).length() < bound);

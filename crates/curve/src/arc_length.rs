@@ -1,14 +1,15 @@
-//! Integrals along a curve (length, total curvature, total torsion) and parametrization by arc length.
+//! Integrals along a curve (length, total curvature, total torsion) and parametrization by arc
+//! length.
 
 use crate::Curve;
 use crate::quadrature::integrate;
 
-/// Largest number of Newton steps of [`ArcLength::parameter_at`]. More have no effect, because bisection alone
-/// needs 53. Fewer: cusps lose digits.
+/// Largest number of Newton steps of [`ArcLength::parameter_at`]. More have no effect, because
+/// bisection alone needs 53. Fewer: cusps lose digits.
 const STEPS: usize = 60;
 
-/// Equal parts of each smooth piece in the table of an [`ArcLength`]. Larger: a longer table. Smaller: more
-/// Newton steps.
+/// Equal parts of each smooth piece in the table of an [`ArcLength`]. Larger: a longer table.
+/// Smaller: more Newton steps.
 const PARTS: usize = 16;
 
 /// Table of arc lengths along a curve, for conversion between parameter and length.
@@ -57,8 +58,8 @@ impl<C: Curve> ArcLength<C> {
         self.lengths[self.lengths.len() - 1]
     }
 
-    /// Entries of the table: ascending parameters over the whole domain, each with the length of the curve up to
-    /// that parameter.
+    /// Entries of the table: ascending parameters over the whole domain, each with the length of
+    /// the curve up to that parameter.
     pub fn table(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.parameters.iter().copied().zip(self.lengths.iter().copied())
     }
@@ -72,7 +73,8 @@ impl<C: Curve> ArcLength<C> {
         self.lengths[part] + rest
     }
 
-    /// Parameter at the given `length` from the start. The length is clamped to [0, [`total`](Self::total)].
+    /// Parameter at the given `length` from the start. The length is clamped to [0,
+    /// [`total`](Self::total)].
     pub fn parameter_at(&self, length: f64) -> f64 {
         let length = length.clamp(0.0, self.total());
         let last = self.parameters.len() - 1;
@@ -97,7 +99,8 @@ impl<C: Curve> ArcLength<C> {
             if step.abs() <= 2.0 * f64::EPSILON * (parameter.abs() + width) {
                 return parameter;
             }
-            // Bisect if the step leaves the bracket, as it does near a cusp, where the speed is zero.
+            // Bisect if the step leaves the bracket, as it does near a cusp, where the speed is
+            // zero.
             parameter = if next > low && next < high { next } else { 0.5 * (low + high) };
         }
         parameter
@@ -128,8 +131,9 @@ pub fn total_squared_curvature(curve: &impl Curve) -> f64 {
 
 /// ∫ τ ds over `curve`, radians. Meaningful only if the curvature is positive everywhere.
 ///
-/// If the curvature is nearly zero at a point, the torsion has a peak that the quadrature cannot resolve, and the
-/// result is inaccurate. The closing angle of rotation-minimizing frames does not have this problem.
+/// If the curvature is nearly zero at a point, the torsion has a peak that the quadrature cannot
+/// resolve, and the result is inaccurate. The closing angle of rotation-minimizing frames does not
+/// have this problem.
 pub fn total_torsion(curve: &impl Curve) -> f64 {
     along(curve, |u| {
         let jet = curve.jet(u);
@@ -155,7 +159,8 @@ mod tests {
     use super::*;
     use crate::{Bezier, TrigonometricCurve};
 
-    /// Reference values from 40-digit arithmetic. The bounds allow rounding in sums of about 20 parts.
+    /// Reference values from 40-digit arithmetic. The bounds allow rounding in sums of about 20
+    /// parts.
     #[test]
     fn knots_have_the_known_integrals() {
         let torus = TrigonometricCurve::torus_knot();
@@ -170,7 +175,8 @@ mod tests {
         assert!((total_torsion(&cinquefoil) + 1.407_701_989_360_733_4).abs() < 1e-12);
     }
 
-    /// Zheng 3.4: the torsion integral tends to −π, and the torsion has a peak as narrow as the height.
+    /// Zheng 3.4: the torsion integral tends to −π, and the torsion has a peak as narrow as the
+    /// height.
     #[test]
     fn s_curve_torsion_is_resolved_down_to_narrow_peaks() {
         for (height, exact) in [(1.0, -2.640_027_770_017_6), (0.1, -3.099_128_313_107_5), (0.01, -3.137_366_329_922)] {

@@ -1,8 +1,8 @@
 //! Double reflection for a batch of sixteen curves, in single precision.
 //!
-//! The steps along one curve depend on each other, so a processor waits most of the time. Sixteen curves fill
-//! its vector registers. Chords are computed in double precision before rounding, because on dense samples
-//! their cancellation would lose most digits of single precision.
+//! The steps along one curve depend on each other, so a processor waits most of the time. Sixteen
+//! curves fill its vector registers. Chords are computed in double precision before rounding,
+//! because on dense samples their cancellation would lose most digits of single precision.
 
 use glam::DVec3;
 use multiversion::multiversion;
@@ -137,14 +137,16 @@ impl SpineBatch {
         ReferenceBatch { vectors: vec![VectorLanes::ZERO; self.tangents.len()], smallest: [4.0; BATCH_SIZE] }
     }
 
-    /// Computes the rotation-minimizing reference vectors of all curves into `references`. The first vector of
-    /// each curve is the component of its start vector normal to the first tangent.
+    /// Computes the rotation-minimizing reference vectors of all curves into `references`. The
+    /// first vector of each curve is the component of its start vector normal to the first tangent.
     ///
     /// # Errors
-    /// [`FrameError::Reference`] if a start vector is zero, not finite, or parallel to the first tangent.
+    /// [`FrameError::Reference`] if a start vector is zero, not finite, or parallel to the first
+    /// tangent.
     ///
     /// # Panics
-    /// If there is not one start vector per curve, or if `references` has another number of stations.
+    /// If there is not one start vector per curve, or if `references` has another number of
+    /// stations.
     pub fn propagate(&self, starts: &[DVec3], references: &mut ReferenceBatch) -> Result<(), FrameError> {
         assert_eq!(starts.len(), self.count, "one start vector per curve");
         assert_eq!(references.vectors.len(), self.tangents.len(), "the references must belong to this batch");
@@ -161,8 +163,8 @@ impl SpineBatch {
     /// Returns the frames of one curve, orthonormalized in double precision.
     ///
     /// # Errors
-    /// [`FrameError::DegenerateSegment`] if a segment of the curve does not determine a rotation. The frames of
-    /// the other curves are still valid.
+    /// [`FrameError::DegenerateSegment`] if a segment of the curve does not determine a rotation.
+    /// The frames of the other curves are still valid.
     ///
     /// # Panics
     /// If `curve` is out of range.
@@ -191,11 +193,11 @@ impl SpineBatch {
     }
 }
 
-/// Double reflection for all lanes, segment by segment. Returns the smallest squared length of the second
-/// reflection vector of each lane.
+/// Double reflection for all lanes, segment by segment. Returns the smallest squared length of the
+/// second reflection vector of each lane.
 ///
-/// It is compiled for several instruction sets. None of the versions fuses multiplications and additions, so
-/// all give the same bits.
+/// It is compiled for several instruction sets. None of the versions fuses multiplications and
+/// additions, so all give the same bits.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
 fn propagate_lanes(chords: &[VectorLanes], tangents: &[VectorLanes], references: &mut [VectorLanes]) -> Lanes {
     let mut smallest = [4.0; BATCH_SIZE];
@@ -259,7 +261,8 @@ mod tests {
                 .unwrap();
                 let frames = batch.frames(curve, &references).unwrap();
                 let worst = frames.iter().zip(&exact.stations).map(|(a, b)| a.r.distance(b.r)).fold(0.0, f64::max);
-                // A thousand steps with random rounding in single precision: √1000 · 6e-8 = 2e-6, and a margin of four.
+                // A thousand steps with random rounding in single precision: √1000 · 6e-8 = 2e-6,
+                // and a margin of four.
                 assert!(worst < 8e-6, "curve {curve}: {worst:e}");
                 // Orthonormal in double precision.
                 assert!(frames.iter().all(|f| f.r.dot(f.t).abs() < 1e-15 && (f.r.length() - 1.0).abs() < 1e-15));

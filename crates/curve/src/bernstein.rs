@@ -2,8 +2,8 @@
 
 use std::ops::{Add, Mul};
 
-/// Bernstein coefficients of the product of two polynomials. `multiply` multiplies their coefficients, which
-/// can be scalars or vectors.
+/// Bernstein coefficients of the product of two polynomials. `multiply` multiplies their
+/// coefficients, which can be scalars or vectors.
 pub(crate) fn product<A: Copy, B: Copy, C>(f: &[A], g: &[B], multiply: impl Fn(A, B) -> C) -> Vec<C>
 where
     C: Copy + Default + Add<Output = C> + Mul<f64, Output = C>,

@@ -32,8 +32,8 @@ impl Bezier {
         Self { control_points }
     }
 
-    /// S-shaped curve of degree five that shows the instability of torsion. As `height` tends to zero, the
-    /// curve becomes planar and its torsion at parameter ½ grows without bound.
+    /// S-shaped curve of degree five that shows the instability of torsion. As `height` tends to
+    /// zero, the curve becomes planar and its torsion at parameter ½ grows without bound.
     ///
     /// Source: Zheng's thesis, section 3.4.
     pub fn s_curve(height: f64) -> Self {

@@ -5,25 +5,26 @@ use glam::DVec3;
 use crate::Curve;
 use crate::quadrature::gauss;
 
-/// Largest turning of the tangent within one piece of a [`ClosestPoint`], radians. Larger: more pieces fail
-/// the monotonicity test and are split again at every query. Smaller: more spheres to test.
+/// Largest turning of the tangent within one piece of a [`ClosestPoint`], radians. Larger: more
+/// pieces fail the monotonicity test and are split again at every query. Smaller: more spheres to
+/// test.
 const PIECE_TURNING: f64 = 0.3;
 
-/// Largest number of halvings of a smooth piece whose turning is too large. Reached only near cusps. Larger:
-/// more pieces at cusps. Smaller: loose bounds at cusps.
+/// Largest number of halvings of a smooth piece whose turning is too large. Reached only near
+/// cusps. Larger: more pieces at cusps. Smaller: loose bounds at cusps.
 const PIECE_DEPTH: u32 = 12;
 
-/// Largest number of halvings of a piece during a query, if the derivative of the distance is not monotonic.
-/// Larger: each step doubles the cost of such queries. Smaller: minima that are close together beyond the
-/// center of curvature are missed.
+/// Largest number of halvings of a piece during a query, if the derivative of the distance is not
+/// monotonic. Larger: each step doubles the cost of such queries. Smaller: minima that are close
+/// together beyond the center of curvature are missed.
 const QUERY_DEPTH: u32 = 6;
 
-/// Largest number of bracketed Newton steps. Larger: no effect, because bisection alone reaches rounding error.
-/// Smaller: digits are lost near cusps.
+/// Largest number of bracketed Newton steps. Larger: no effect, because bisection alone reaches
+/// rounding error. Smaller: digits are lost near cusps.
 const STEPS: usize = 60;
 
-/// Relative size of the last Newton step, as a fraction of the piece. The error after it is its square. Larger:
-/// digits are lost. Smaller: one more step without effect.
+/// Relative size of the last Newton step, as a fraction of the piece. The error after it is its
+/// square. Larger: digits are lost. Smaller: one more step without effect.
 const LAST_STEP: f64 = 1e-8;
 
 /// A point on a curve at which the distance to the query is a local minimum.
@@ -64,26 +65,28 @@ struct Piece {
     end: f64,
     /// Position at the midpoint of the parameter interval.
     center: DVec3,
-    /// Largest arc length from the center to an end. No point of the piece is farther from the center.
+    /// Largest arc length from the center to an end. No point of the piece is farther from the
+    /// center.
     radius: f64,
     /// Position at the start, and the vector from the start to the end.
     chord: [DVec3; 2],
-    /// Upper bound of the distance of the piece from its chord: length · turning / 4. The triangle of the chord
-    /// and the farthest point turns at most as much as the piece itself.
+    /// Upper bound of the distance of the piece from its chord: length · turning / 4. The triangle
+    /// of the chord and the farthest point turns at most as much as the piece itself.
     height: f64,
-    /// If all points of the piece are nearer to the query than this, the piece has at most one minimum.
+    /// If all points of the piece are nearer to the query than this, the piece has at most one
+    /// minimum.
     calm_distance: f64,
     is_first: bool,
     is_last: bool,
-    /// Parameter at which the slope at the end is evaluated. For the last piece of a closed curve, it is the
-    /// start of the domain. Both pieces at the seam then use the same sign, so rounding cannot lose a minimum
-    /// between them.
+    /// Parameter at which the slope at the end is evaluated. For the last piece of a closed curve,
+    /// it is the start of the domain. Both pieces at the seam then use the same sign, so rounding
+    /// cannot lose a minimum between them.
     end_of_slope: f64,
 }
 
 impl Piece {
-    /// Distance from `query` to the chord, and an estimate of the nearest parameter: that of the nearest fraction
-    /// of the chord.
+    /// Distance from `query` to the chord, and an estimate of the nearest parameter: that of the
+    /// nearest fraction of the chord.
     fn chord_distance(&self, query: DVec3) -> (f64, f64) {
         let [start, chord] = self.chord;
         let offset = query - start;
@@ -98,9 +101,9 @@ struct Slope {
     value: f64,
     /// Derivative of `value`, for Newton's method.
     derivative: f64,
-    /// A positive multiple of the derivative with respect to arc length, 1 − κ n · (query − x). Unlike
-    /// `derivative`, it does not depend on the parametrization. An interval of constant sign has at most one
-    /// root.
+    /// A positive multiple of the derivative with respect to arc length, 1 − κ n · (query − x).
+    /// Unlike `derivative`, it does not depend on the parametrization. An interval of constant sign
+    /// has at most one root.
     rise: f64,
 }
 
@@ -135,8 +138,8 @@ impl<C: Curve> ClosestPoint<C> {
         })
     }
 
-    /// Returns the point of the curve nearest to `query`. If several are equally near, returns the one with the
-    /// smallest parameter.
+    /// Returns the point of the curve nearest to `query`. If several are equally near, returns the
+    /// one with the smallest parameter.
     pub fn closest(&self, query: DVec3) -> CurveProjection {
         let mut squared = f64::INFINITY;
         let mut nearest = 0;
@@ -153,7 +156,8 @@ impl<C: Curve> ClosestPoint<C> {
             position: piece.center,
             distance: squared.sqrt(),
         };
-        // Search the piece with the nearest center first. Its result bounds the search of the others.
+        // Search the piece with the nearest center first. Its result bounds the search of the
+        // others.
         self.improve(piece, query, &mut best);
         for (index, (center, radius)) in self.spheres.iter().enumerate() {
             let reach = best.distance + radius;
@@ -183,10 +187,11 @@ impl<C: Curve> ClosestPoint<C> {
         queries.iter().map(|&query| self.closest(query)).collect()
     }
 
-    /// Returns all local minima of the distance to `query` up to the distance `within`, nearest first.
+    /// Returns all local minima of the distance to `query` up to the distance `within`, nearest
+    /// first.
     ///
-    /// An end of an open curve is a minimum if the distance grows from it. A query at the center of an arc has
-    /// no isolated minimum, but [`closest`](Self::closest) still returns a point.
+    /// An end of an open curve is a minimum if the distance grows from it. A query at the center of
+    /// an arc has no isolated minimum, but [`closest`](Self::closest) still returns a point.
     ///
     /// # Examples
     /// ```
@@ -234,8 +239,8 @@ impl<C: Curve> ClosestPoint<C> {
         }
     }
 
-    /// Reports the local minima of a piece: roots of the slope in (start, end] at which it rises, and the ends of an
-    /// open curve.
+    /// Reports the local minima of a piece: roots of the slope in (start, end] at which it rises,
+    /// and the ends of an open curve.
     fn minima(&self, piece: &Piece, query: DVec3, guess: f64, report: &mut impl FnMut(CurveProjection)) {
         let start = self.slope(piece.start, query);
         let end = self.slope(piece.end_of_slope, query);
@@ -277,8 +282,8 @@ impl<C: Curve> ClosestPoint<C> {
         }
     }
 
-    /// Root of the slope in (low, high], by Newton's method with bisection. The slope is negative at `low` and not
-    /// negative at `high`.
+    /// Root of the slope in (low, high], by Newton's method with bisection. The slope is negative
+    /// at `low` and not negative at `high`.
     fn root(&self, mut low: f64, mut high: f64, guess: f64, query: DVec3) -> f64 {
         let size = high - low;
         let mut parameter = guess;
@@ -300,7 +305,8 @@ impl<C: Curve> ClosestPoint<C> {
     }
 }
 
-/// Halves [start, end] until its turning is at most [`PIECE_TURNING`], and appends the parts to `pieces`.
+/// Halves [start, end] until its turning is at most [`PIECE_TURNING`], and appends the parts to
+/// `pieces`.
 fn cut(curve: &impl Curve, start: f64, end: f64, depth: u32, pieces: &mut Vec<Piece>) {
     let middle = 0.5 * (start + end);
     // Integrate the turning: differences of sampled tangents would miss full turns.
@@ -315,8 +321,8 @@ fn cut(curve: &impl Curve, start: f64, end: f64, depth: u32, pieces: &mut Vec<Pi
     let (left, right) = (gauss(speed, start, middle), gauss(speed, middle, end));
     let radius = left.max(right) * (1.0 + 1e-6);
     let height = (0.25 * turning * (1.0 + 1e-3) * (left + right)).min(2.0 * radius);
-    // Queries nearer than the center of curvature have no second minimum. The factor allows for the error of the
-    // sampled curvature.
+    // Queries nearer than the center of curvature have no second minimum. The factor allows for the
+    // error of the sampled curvature.
     let samples = [0.0, 0.25, 0.5, 0.75, 1.0].map(|fraction| curve.jet(start + (end - start) * fraction));
     let curvature = samples.iter().map(|jet| jet.curvature()).fold(0.0, f64::max);
     let (first, last) = (curve.position(start), curve.position(end));
@@ -435,7 +441,8 @@ mod tests {
 
     #[test]
     fn all_branches_are_found() {
-        // The sign changes of the sampled slope are the minima. No two minima of these queries merge.
+        // The sign changes of the sampled slope are the minima. No two minima of these queries
+        // merge.
         let knot = TrigonometricCurve::torus_knot();
         let search = ClosestPoint::new(&knot);
         for query in [DVec3::new(0.1, 0.2, 0.05), DVec3::new(0.6, 0.1, 0.0), DVec3::new(1.4, 0.3, -0.2)] {

@@ -18,8 +18,8 @@ pub trait Curve: Debug + Send + Sync {
     /// First and last parameter. The first is smaller than the last.
     fn domain(&self) -> (f64, f64);
 
-    /// Position and derivatives at `parameter`. An implementation that is not defined outside its domain clamps
-    /// or wraps the parameter into it.
+    /// Position and derivatives at `parameter`. An implementation that is not defined outside its
+    /// domain clamps or wraps the parameter into it.
     fn jet(&self, parameter: f64) -> CurveJet;
 
     /// Returns true if the curve ends at its first point, with the same tangent.
@@ -27,8 +27,8 @@ pub trait Curve: Debug + Send + Sync {
         false
     }
 
-    /// Ascending parameters at which a derivative up to the third is discontinuous, including the ends of the
-    /// domain. Quadratures do not integrate across them.
+    /// Ascending parameters at which a derivative up to the third is discontinuous, including the
+    /// ends of the domain. Quadratures do not integrate across them.
     fn breaks(&self) -> Vec<f64> {
         let (first, last) = self.domain();
         vec![first, last]
@@ -86,8 +86,8 @@ impl CurveJet {
         self.first.normalize_or_zero()
     }
 
-    /// Curvature vector κ n, per model unit: derivative of the unit tangent with respect to arc length. Zero at
-    /// a cusp.
+    /// Curvature vector κ n, per model unit: derivative of the unit tangent with respect to arc
+    /// length. Zero at a cusp.
     pub fn curvature_vector(&self) -> DVec3 {
         let squared_speed = self.first.length_squared();
         if squared_speed == 0.0 {
@@ -102,8 +102,8 @@ impl CurveJet {
         if speed == 0.0 { 0.0 } else { self.first.cross(self.second).length() / (speed * speed * speed) }
     }
 
-    /// Torsion det(x′, x″, x‴) / |x′ × x″|², per model unit, with n′ = −κ t + τ b. Zero if the curvature is
-    /// zero, because torsion is then undefined.
+    /// Torsion det(x′, x″, x‴) / |x′ × x″|², per model unit, with n′ = −κ t + τ b. Zero if the
+    /// curvature is zero, because torsion is then undefined.
     pub fn torsion(&self) -> f64 {
         let binormal = self.first.cross(self.second);
         let squared = binormal.length_squared();
@@ -121,8 +121,8 @@ impl CurveJet {
     }
 }
 
-/// Jet of a curve that consists of `segments` (at least one). The parameter is the number of the segment plus
-/// the parameter within it.
+/// Jet of a curve that consists of `segments` (at least one). The parameter is the number of the
+/// segment plus the parameter within it.
 pub(crate) fn jet_of_segments(segments: &[impl Curve], parameter: f64) -> CurveJet {
     let segment = (parameter.max(0.0) as usize).min(segments.len() - 1);
     segments[segment].jet(parameter - segment as f64)

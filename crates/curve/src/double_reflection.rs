@@ -1,28 +1,28 @@
 //! The double reflection step.
 //!
-//! Source: W. Wang, B. Jüttler, D. Zheng, Y. Liu, Computation of rotation minimizing frames, ACM Transactions on
-//! Graphics 27(1), 2008, table I. Symbols of the paper: v₁ = `chord`, t_i = `start`, t_{i+1} = `end`, r_i = `r`.
+//! Source: W. Wang, B. Jüttler, D. Zheng, Y. Liu, Computation of rotation minimizing frames, ACM
+//! Transactions on Graphics 27(1), 2008, table I. Symbols of the paper: v₁ = `chord`, t_i =
+//! `start`, t_{i+1} = `end`, r_i = `r`.
 
 use glam::DVec3;
 
-/// Smallest squared length of a chord, which is then 1e-150 long. Smaller: squares are subnormal and lose
-/// digits in the division. Larger: short chords of tiny models
-/// are rejected.
+/// Smallest squared length of a chord, which is then 1e-150 long. Smaller: squares are subnormal
+/// and lose digits in the division. Larger: short chords of tiny models are rejected.
 const SHORTEST_SQUARED_CHORD: f64 = 1e-300;
 
-/// Smallest squared length of the vector of the second reflection. It is at most 4, and near 4 for well
-/// sampled curves. Larger: usable coarse samples are rejected (8 samples of the torus knot reach 0.9).
-/// Smaller: a reversed tangent is accepted, and rounding makes the frame jump, because the limit depends
-/// on the direction from which this vector approaches zero.
+/// Smallest squared length of the vector of the second reflection. It is at most 4, and near 4 for
+/// well sampled curves. Larger: usable coarse samples are rejected (8 samples of the torus knot
+/// reach 0.9). Smaller: a reversed tangent is accepted, and rounding makes the frame jump, because
+/// the limit depends on the direction from which this vector approaches zero.
 pub(crate) const SMALLEST_SECOND_REFLECTION: f64 = 0.04;
 
-/// Moves `r` from the normal plane of the unit tangent `start` to that of `end`: one reflection along
-/// `chord`, and a second one that maps the reflected `start` to `end`. Returns `None` if the reflections
-/// are not determined.
+/// Moves `r` from the normal plane of the unit tangent `start` to that of `end`: one reflection
+/// along `chord`, and a second one that maps the reflected `start` to `end`. Returns `None` if the
+/// reflections are not determined.
 ///
-/// The result is exact for curves on a sphere or plane. For other curves, its error is of fifth order in
-/// the length of the step. The step commutes with inversions, and the step of the reversed segment is its
-/// inverse.
+/// The result is exact for curves on a sphere or plane. For other curves, its error is of fifth
+/// order in the length of the step. The step commutes with inversions, and the step of the reversed
+/// segment is its inverse.
 ///
 /// Only the direction of `chord` matters. The length of `r` is arbitrary and preserved.
 ///
@@ -63,10 +63,11 @@ pub struct AxisAngle {
 impl AxisAngle {
     /// The rotation that [`reflect_twice`] applies. Returns `None` if [`reflect_twice`] does.
     ///
-    /// Use it to obtain the motion itself, and use the reflections to move frames. On straight parts the
-    /// axis is rounding error; if the angle is zero, it is `end`.
+    /// Use it to obtain the motion itself, and use the reflections to move frames. On straight
+    /// parts the axis is rounding error; if the angle is zero, it is `end`.
     ///
-    /// Source: Wang et al. 2008, section 4.5, where γ is misprinted: γ⁻² = |Δx|² |Δt|² + 4 (Δx · t₀)(Δx · t₁).
+    /// Source: Wang et al. 2008, section 4.5, where γ is misprinted: γ⁻² = |Δx|² |Δt|² + 4 (Δx ·
+    /// t₀)(Δx · t₁).
     pub fn of_double_reflection(chord: DVec3, start: DVec3, end: DVec3) -> Option<Self> {
         let unit = chord.try_normalize()?;
         let difference = end - (start - unit * (2.0 * unit.dot(start)));
@@ -123,8 +124,8 @@ mod tests {
         assert_eq!(reflect_twice(DVec3::NAN, DVec3::Y, DVec3::Y, DVec3::Z), None);
     }
 
-    /// Theorem 4.4 with its sign: the exact frame is K h⁵/720 ahead of the step. On a helix, K = κ² τ³ with
-    /// constant κ and τ.
+    /// Theorem 4.4 with its sign: the exact frame is K h⁵/720 ahead of the step. On a helix, K = κ²
+    /// τ³ with constant κ and τ.
     #[test]
     fn the_error_of_a_step_has_the_published_constant() {
         let (radius, rise) = (1.0, 0.5);
@@ -139,8 +140,8 @@ mod tests {
             let exact = crate::Frame::new(b.normal().unwrap(), b.tangent()).turned(-tau * h);
             -exact.angle_to(stepped) * 720.0 / (kappa * kappa * tau * tau * tau * h.powi(5))
         };
-        // In higher precision the ratio at 0.05 is 1.0000238. The rounding of the angle, 1e-16, changes it by
-        // 5e-6.
+        // In higher precision the ratio at 0.05 is 1.0000238. The rounding of the angle, 1e-16,
+        // changes it by 5e-6.
         assert!((ratio(0.05) - 1.0000238).abs() < 5e-6, "{}", ratio(0.05));
         // The next term is of second order, so longer steps determine it, to three digits.
         for h in [0.1, 0.2] {

@@ -48,8 +48,8 @@ impl Frame {
         self.r * offset.x + self.s * offset.y
     }
 
-    /// Angle about the tangent from the reference vector to `direction`, in (−π, π]. Zero if `direction` is
-    /// parallel to the tangent.
+    /// Angle about the tangent from the reference vector to `direction`, in (−π, π]. Zero if
+    /// `direction` is parallel to the tangent.
     pub fn angle_to(&self, direction: DVec3) -> f64 {
         libm::atan2(self.s.dot(direction), self.r.dot(direction))
     }
@@ -65,8 +65,8 @@ pub enum FrameMethod {
     Projection,
     /// Smallest rotation between the tangents (Bloomenthal 1990): second order.
     Rotation,
-    /// Double reflection with chords estimated from the tangents of uniform samples (equation 17): fourth
-    /// order. It does not use the points.
+    /// Double reflection with chords estimated from the tangents of uniform samples (equation 17):
+    /// fourth order. It does not use the points.
     TangentsOnly,
 }
 
@@ -76,15 +76,16 @@ pub enum DegenerateSegment {
     /// Return an error that names the segment.
     #[default]
     Refuse,
-    /// Use the smallest rotation between the tangents, and list the segment in [`Frames::substituted`].
+    /// Use the smallest rotation between the tangents, and list the segment in
+    /// [`Frames::substituted`].
     Rotate,
 }
 
 /// Frames at the stations of a [`Spine`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frames {
-    /// One frame per station, one more than segments. On a closed spine, the last frame is the one that
-    /// arrives back at the first point.
+    /// One frame per station, one more than segments. On a closed spine, the last frame is the one
+    /// that arrives back at the first point.
     pub stations: Vec<Frame>,
     /// Segments on which the smallest rotation replaced the method: repeated points, and degenerate
     /// segments with [`DegenerateSegment::Rotate`].
@@ -119,8 +120,8 @@ pub enum FrameError {
     },
 }
 
-/// Smallest squared sine of the angle between reference vector and tangent. Larger: usable vectors are
-/// rejected. Smaller: the rounding of an almost parallel vector determines the first frame.
+/// Smallest squared sine of the angle between reference vector and tangent. Larger: usable vectors
+/// are rejected. Smaller: the rounding of an almost parallel vector determines the first frame.
 const SMALLEST_SQUARED_SINE: f64 = 1e-20;
 
 /// The component of `reference` normal to the unit vector `tangent`, normalized.
@@ -143,21 +144,22 @@ pub fn orthogonal_reference(reference: DVec3, tangent: DVec3) -> Result<DVec3, F
     if across.length_squared() < SMALLEST_SQUARED_SINE {
         return Err(FrameError::Reference);
     }
-    // If the vectors are almost parallel, rounding leaves a component along the tangent. A second pass
-    // removes it.
+    // If the vectors are almost parallel, rounding leaves a component along the tangent. A second
+    // pass removes it.
     Ok(across.normalize().reject_from_normalized(tangent).normalize())
 }
 
-/// Computes rotation-minimizing frames along `spine`. The first reference vector is the component of
-/// `reference` normal to the first tangent.
+/// Computes rotation-minimizing frames along `spine`. The first reference vector is the component
+/// of `reference` normal to the first tangent.
 ///
 /// Two equal neighboring points have no chord. Every method then uses the smallest rotation between
 /// their tangents and lists the segment in [`Frames::substituted`].
 ///
 /// # Errors
-/// - [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
-/// - [`FrameError::DegenerateSegment`] if a segment does not determine a rotation and `degenerate` is
-///   [`DegenerateSegment::Refuse`].
+/// - [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first
+///   tangent.
+/// - [`FrameError::DegenerateSegment`] if a segment does not determine a rotation and `degenerate`
+///   is [`DegenerateSegment::Refuse`].
 /// - [`FrameError::OppositeTangents`] if the smallest rotation is used between opposite tangents.
 ///
 /// # Examples

@@ -1,9 +1,9 @@
 //! Exact frames of analytic curves, by quadrature relative to a fixed direction.
 //!
-//! The smallest rotation from a fixed unit vector a to the tangent t moves a frame along the curve. Relative to
-//! a rotation-minimizing frame, this frame rotates about the tangent at the rate −a · (t × t′)/(1 + a · t).
-//! The rate is regular at points of zero curvature. It is singular only at t = −a, so a is chosen far from
-//! all reversed tangents.
+//! The smallest rotation from a fixed unit vector a to the tangent t moves a frame along the curve.
+//! Relative to a rotation-minimizing frame, this frame rotates about the tangent at the rate −a ·
+//! (t × t′)/(1 + a · t). The rate is regular at points of zero curvature. It is singular only at t
+//! = −a, so a is chosen far from all reversed tangents.
 
 use glam::DVec3;
 
@@ -12,14 +12,14 @@ use crate::quadrature::integrate;
 use crate::rotation::rotate_minimally;
 use crate::{Curve, Frame};
 
-/// Candidates for the fixed vector. Larger: more time, and little gain once the smallest 1 + a · t is near its
-/// maximum. Smaller: the rate has steeper peaks, which need more panels.
+/// Candidates for the fixed vector. Larger: more time, and little gain once the smallest 1 + a · t
+/// is near its maximum. Smaller: the rate has steeper peaks, which need more panels.
 const DIRECTIONS: usize = 400;
 /// Tangents with which each candidate is compared, with the same trade-off.
 const TANGENTS: usize = 500;
 
-/// Rotation-minimizing frames of `curve` at ascending `parameters`, accurate to about 1e-13 radians for smooth
-/// curves. They serve as the reference for sampled methods.
+/// Rotation-minimizing frames of `curve` at ascending `parameters`, accurate to about 1e-13 radians
+/// for smooth curves. They serve as the reference for sampled methods.
 ///
 /// # Errors
 /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.

@@ -1,15 +1,16 @@
 //! Inversions in spheres, applied to points, vectors and frames.
 //!
-//! Inversions generate the Möbius transformations. They preserve rotation-minimizing frames, and double reflection
-//! commutes with them. Source: M. Bartoň, B. Jüttler, W. Wang, Construction of rational curves with rational
-//! rotation-minimizing frames via Möbius transformations, 2009, section 2.
+//! Inversions generate the Möbius transformations. They preserve rotation-minimizing frames, and
+//! double reflection commutes with them. Source: M. Bartoň, B. Jüttler, W. Wang, Construction of
+//! rational curves with rational rotation-minimizing frames via Möbius transformations, 2009,
+//! section 2.
 
 use glam::DVec3;
 
 use crate::{Frame, Spine};
 
-/// Inversion in a sphere. It exchanges inside and outside along rays from the center, and it is its own
-/// inverse.
+/// Inversion in a sphere. It exchanges inside and outside along rays from the center, and it is its
+/// own inverse.
 ///
 /// # Examples
 /// ```
@@ -37,8 +38,9 @@ impl Inversion {
         (squared > 0.0).then(|| self.center + offset * (self.squared_radius / squared))
     }
 
-    /// Image of a vector at `point` under the normalized differential, which preserves lengths: a reflection
-    /// along the ray from the center (equation 12). Zero at the center, where it is undefined.
+    /// Image of a vector at `point` under the normalized differential, which preserves lengths: a
+    /// reflection along the ray from the center (equation 12). Zero at the center, where it is
+    /// undefined.
     pub fn vector(&self, point: DVec3, vector: DVec3) -> DVec3 {
         let offset = point - self.center;
         let squared = offset.length_squared();
@@ -47,14 +49,14 @@ impl Inversion {
 
     /// Image of a frame at `point`.
     ///
-    /// An inversion reverses orientation. Therefore only r and t are mapped, and s follows from them. Mapping
-    /// all three (equation 18) would give a left-handed frame.
+    /// An inversion reverses orientation. Therefore only r and t are mapped, and s follows from
+    /// them. Mapping all three (equation 18) would give a left-handed frame.
     pub fn frame(&self, point: DVec3, frame: &Frame) -> Frame {
         Frame::new(self.vector(point, frame.r), self.vector(point, frame.t))
     }
 
-    /// Image of a spine with its tangents. Returns `None` if one of its points is the center or is mapped
-    /// beyond the largest coordinate of a [`Spine`].
+    /// Image of a spine with its tangents. Returns `None` if one of its points is the center or is
+    /// mapped beyond the largest coordinate of a [`Spine`].
     pub fn spine(&self, spine: &Spine) -> Option<Spine> {
         let points = spine.points().iter().map(|&point| self.point(point)).collect::<Option<Vec<_>>>()?;
         let tangents =

@@ -7,24 +7,24 @@
 //!   [closure](FunctionCurve) are curves.
 //! - A [`Spine`] is a sampled curve: points with unit tangents at *stations*, joined by *segments*,
 //!   open or closed.
-//! - A [`Frame`] (r, s, t) is right-handed and orthonormal. t is the tangent, r the *reference vector*,
-//!   and s = t × r.
-//! - A frame is *rotation-minimizing* if it does not rotate about the tangent. *Twist* is an additional
-//!   rotation about the tangent, in radians.
-//! - A *cross-section* is a planar curve with coordinates along r and s. Sweeping it along a spine gives
-//!   a surface: a [`PointGrid`], or an exact [`RationalPatch`].
+//! - A [`Frame`] (r, s, t) is right-handed and orthonormal. t is the tangent, r the *reference
+//!   vector*, and s = t × r.
+//! - A frame is *rotation-minimizing* if it does not rotate about the tangent. *Twist* is an
+//!   additional rotation about the tangent, in radians.
+//! - A *cross-section* is a planar curve with coordinates along r and s. Sweeping it along a spine
+//!   gives a surface: a [`PointGrid`], or an exact [`RationalPatch`].
 //!
-//! Lengths are in model units and coordinates are `f64`. No function starts a thread, and the same input
-//! gives the same bits on every machine.
+//! Lengths are in model units and coordinates are `f64`. No function starts a thread, and the same
+//! input gives the same bits on every machine.
 //!
 //! # Formula
 //!
-//! The reference vector of a rotation-minimizing frame satisfies r′ = −(r · t′) t: its derivative is
-//! parallel to the tangent. The default method, *double reflection*, moves r from station i to station
-//! i + 1 by two reflections v ↦ v − 2 n (n · v) / (n · n). The first has the chord as its vector,
-//! n₁ = xᵢ₊₁ − xᵢ. It maps rᵢ to r̃ and tᵢ to t̃. The second has n₂ = tᵢ₊₁ − t̃. It maps t̃ to tᵢ₊₁ and
-//! r̃ to rᵢ₊₁. Source: W. Wang, B. Jüttler, D. Zheng, Y. Liu, Computation of rotation minimizing frames,
-//! ACM Transactions on Graphics 27(1), 2008.
+//! The reference vector of a rotation-minimizing frame satisfies r′ = −(r · t′) t: its derivative
+//! is parallel to the tangent. The default method, *double reflection*, moves r from station i to
+//! station i + 1 by two reflections v ↦ v − 2 n (n · v) / (n · n). The first has the chord as its
+//! vector, n₁ = xᵢ₊₁ − xᵢ. It maps rᵢ to r̃ and tᵢ to t̃. The second has n₂ = tᵢ₊₁ − t̃. It maps t̃
+//! to tᵢ₊₁ and r̃ to rᵢ₊₁. Source: W. Wang, B. Jüttler, D. Zheng, Y. Liu, Computation of rotation
+//! minimizing frames, ACM Transactions on Graphics 27(1), 2008.
 //!
 //! # Curves through points
 //!
@@ -86,14 +86,14 @@
 //!
 //! # Limits
 //!
-//! - Frames of sampled spines are exact only on spheres and planes. On other curves, the error of double
-//!   reflection is of fourth order in the spacing.
+//! - Frames of sampled spines are exact only on spheres and planes. On other curves, the error of
+//!   double reflection is of fourth order in the spacing.
 //! - Estimated tangents are of fourth order if there are at least five points.
-//! - [`ClosestPoint::branches`] can miss a pair of minima that have just separated beyond the center of
-//!   curvature. [`ClosestPoint::closest`] still returns one of the two.
+//! - [`ClosestPoint::branches`] can miss a pair of minima that have just separated beyond the
+//!   center of curvature. [`ClosestPoint::closest`] still returns one of the two.
 //! - [`reach()`] overestimates the reach of a curve; the error is of second order in the spacing.
-//! - Not every curve has a [`PhCubic`] or [`MoebiusSegment`] between two samples. Their constructors
-//!   return an error that names the segment or parameter.
+//! - Not every curve has a [`PhCubic`] or [`MoebiusSegment`] between two samples. Their
+//!   constructors return an error that names the segment or parameter.
 
 mod analytic;
 mod arc_length;

@@ -1,15 +1,17 @@
-//! Rational curves with rational rotation-minimizing frames: images of planar Pythagorean-hodograph cubics under
-//! an inversion.
+//! Rational curves with rational rotation-minimizing frames: images of planar Pythagorean-hodograph
+//! cubics under an inversion.
 //!
-//! Source: M. Bartoň, B. Jüttler, W. Wang, Construction of rational curves with rational rotation-minimizing frames
-//! via Möbius transformations, 2009. The end points and tangents of a segment determine a sphere. An inversion
-//! about a point f of the sphere maps it to a plane. In the plane, a Pythagorean-hodograph cubic interpolates the
-//! mapped data, and the normal of the plane is a rotation-minimizing vector. The same inversion maps the cubic
-//! and its frame to a curve of degree six on the sphere.
+//! Source: M. Bartoň, B. Jüttler, W. Wang, Construction of rational curves with rational
+//! rotation-minimizing frames via Möbius transformations, 2009. The end points and tangents of a
+//! segment determine a sphere. An inversion about a point f of the sphere maps it to a plane. In
+//! the plane, a Pythagorean-hodograph cubic interpolates the mapped data, and the normal of the
+//! plane is a rotation-minimizing vector. The same inversion maps the cubic and its frame to a
+//! curve of degree six on the sphere.
 //!
-//! The paper chooses the f farthest from the ends. The planar data can then require an inflection, which the cubic
-//! does not have; on a circular helix, they always do. Such segments [tilt](Tilt::WhenNeeded): f moves sideways on
-//! the sphere. This changes the planar data but not the frames at the joints, which are those of double reflection.
+//! The paper chooses the f farthest from the ends. The planar data can then require an inflection,
+//! which the cubic does not have; on a circular helix, they always do. Such segments
+//! [tilt](Tilt::WhenNeeded): f moves sideways on the sphere. This changes the planar data but not
+//! the frames at the joints, which are those of double reflection.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -26,14 +28,16 @@ pub use spline::MoebiusSpline;
 /// Position of the center of inversion on the sphere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tilt {
-    /// The center moves sideways if the planar data turn so little that the cubic does not exist or is inaccurate.
+    /// The center moves sideways if the planar data turn so little that the cubic does not exist or
+    /// is inaccurate.
     #[default]
     WhenNeeded,
     /// The center stays opposite to the ends, as published. For comparison.
     Never,
 }
 
-/// A rational curve of degree six on a sphere, with a rational rotation-minimizing frame, over [0, 1].
+/// A rational curve of degree six on a sphere, with a rational rotation-minimizing frame, over [0,
+/// 1].
 ///
 /// # Examples
 /// ```
@@ -55,8 +59,8 @@ pub struct MoebiusSegment {
     inversion: AnchoredInversion,
 }
 
-/// The inversion about a center f that fixes the point `anchor`. The formulas remain valid if f is infinitely far;
-/// the inversion is then a reflection in a plane.
+/// The inversion about a center f that fixes the point `anchor`. The formulas remain valid if f is
+/// infinitely far; the inversion is then a reflection in a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct AnchoredInversion {
     anchor: DVec3,
@@ -87,8 +91,8 @@ impl AnchoredInversion {
     }
 }
 
-/// A candidate for f in the bisecting plane of the chord: `direction` from the midpoint of the chord, one over
-/// the distance from it, and the normal of the image plane of the sphere.
+/// A candidate for f in the bisecting plane of the chord: `direction` from the midpoint of the
+/// chord, one over the distance from it, and the normal of the image plane of the sphere.
 #[derive(Debug, Clone, Copy)]
 struct Center {
     direction: DVec3,
@@ -100,9 +104,10 @@ impl MoebiusSegment {
     /// Interpolates two end points and the directions of their tangents.
     ///
     /// # Errors
-    /// - [`PhCubicError::NotFinite`], [`PhCubicError::RepeatedPoint`] or [`PhCubicError::ZeroTangent`] if the
-    ///   input is invalid.
-    /// - Another [`PhCubicError`] if the planar data have no cubic for any center of inversion that `tilt` allows.
+    /// - [`PhCubicError::NotFinite`], [`PhCubicError::RepeatedPoint`] or
+    ///   [`PhCubicError::ZeroTangent`] if the input is invalid.
+    /// - Another [`PhCubicError`] if the planar data have no cubic for any center of inversion that
+    ///   `tilt` allows.
     pub fn hermite(
         start: DVec3,
         end: DVec3,
@@ -117,7 +122,8 @@ impl MoebiusSegment {
         }
         let mut centers = vec![opposite];
         let turning = ends.turning(&opposite).abs();
-        // If the planar tangents turn less than the chord on the sphere, the data are near an inflection.
+        // If the planar tangents turn less than the chord on the sphere, the data are near an
+        // inflection.
         if turning < ends.length * ends.curvature {
             let tilted = ends.tilted_centers(FRAC_1_SQRT_2);
             // Prefer more turning: it is farther from an inflection.
@@ -125,8 +131,8 @@ impl MoebiusSegment {
             centers.insert(0, tilted[first]);
             centers.insert(1, tilted[1 - first]);
         }
-        // On a nearly flat sphere, a tilted center changes the turning too little. A center near the chord always
-        // changes it.
+        // On a nearly flat sphere, a tilted center changes the turning too little. A center near
+        // the chord always changes it.
         for distance in [4.0, 2.0, 1.0] {
             centers.extend(ends.near_centers(distance));
         }
@@ -145,14 +151,15 @@ impl MoebiusSegment {
         &self.image
     }
 
-    /// Rotation-minimizing frames at `parameters`. The reference vector at 0 is the component of `reference`
-    /// normal to the tangent.
+    /// Rotation-minimizing frames at `parameters`. The reference vector at 0 is the component of
+    /// `reference` normal to the tangent.
     ///
-    /// The frames are rational: the reference vector is the reflection of a combination, with constant
-    /// coefficients, of the normal of the plane and its cross product with the tangent.
+    /// The frames are rational: the reference vector is the reflection of a combination, with
+    /// constant coefficients, of the normal of the plane and its cross product with the tangent.
     ///
     /// # Errors
-    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
+    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first
+    /// tangent.
     pub fn frames(&self, parameters: &[f64], reference: DVec3) -> Result<Vec<Frame>, FrameError> {
         let start = orthogonal_reference(reference, self.tangent(0.0))?;
         let first = self.image.jet(0.0);
@@ -164,7 +171,8 @@ impl MoebiusSegment {
             .map(|&u| {
                 let jet = self.image.jet(u);
                 let r = self.normal * along + jet.tangent().cross(self.normal).normalize_or_zero() * across;
-                // An inversion reverses orientation. Recompute the second normal vector instead of mapping it.
+                // An inversion reverses orientation. Recompute the second normal vector instead of
+                // mapping it.
                 let t = self.inversion.vector(jet.position, jet.tangent());
                 let r = self.inversion.vector(jet.position, r).reject_from_normalized(t).normalize_or_zero();
                 Frame::new(r, t)
@@ -207,7 +215,8 @@ impl Curve for MoebiusSegment {
         let jet = self.image.jet(u);
         let (e, k) = (self.inversion.direction, self.inversion.nearness);
         let w = jet.position - self.inversion.anchor;
-        // x = n/q with n = w − e m, q = 1 + k m and m = 2 e·w + k w·w. The derivatives follow from the quotient rule.
+        // x = n/q with n = w − e m, q = 1 + k m and m = 2 e·w + k w·w. The derivatives follow from
+        // the quotient rule.
         let m = [
             2.0 * e.dot(w) + k * w.dot(w),
             2.0 * e.dot(jet.first) + 2.0 * k * w.dot(jet.first),
@@ -252,8 +261,8 @@ impl Ends {
         let chord = difference.try_normalize().ok_or(PhCubicError::RepeatedPoint)?;
         let t0 = start_tangent.try_normalize().ok_or(PhCubicError::ZeroTangent)?;
         let t1 = end_tangent.try_normalize().ok_or(PhCubicError::ZeroTangent)?;
-        // A reflection in the bisecting plane of the chord maps the tangent plane of the sphere at the end to that
-        // at the start. Both tangents then span the tangent plane at the start.
+        // A reflection in the bisecting plane of the chord maps the tangent plane of the sphere at
+        // the end to that at the start. Both tangents then span the tangent plane at the start.
         let reflected = t1 - chord * (2.0 * t1.dot(chord));
         let sphere_normal = cross_of_independent(t0, reflected)
             .or_else(|| cross_of_independent(t0, chord))
@@ -279,8 +288,9 @@ impl Ends {
         })
     }
 
-    /// The far intersection of the sphere with a ray from the midpoint. `cosine` is that of the angle between the
-    /// ray and the direction to the center; the sign of `side` selects one of the two rays.
+    /// The far intersection of the sphere with a ray from the midpoint. `cosine` is that of the
+    /// angle between the ray and the direction to the center; the sign of `side` selects one of the
+    /// two rays.
     fn center(&self, cosine: f64, side: f64) -> Center {
         let direction = self.toward_center * cosine + self.sideways * (side * (1.0 - cosine * cosine).max(0.0).sqrt());
         let along = cosine * self.depth;
@@ -302,7 +312,8 @@ impl Ends {
         [self.center(cosine, 1.0), self.center(cosine, -1.0)]
     }
 
-    /// The two f on the sphere at `distance` chord lengths from the midpoint. Empty if the sphere is smaller.
+    /// The two f on the sphere at `distance` chord lengths from the midpoint. Empty if the sphere
+    /// is smaller.
     fn near_centers(&self, distance: f64) -> Vec<Center> {
         let reach = distance * self.length;
         // Solve reach = along + √(half² + along²), in radii, for along.
@@ -314,7 +325,8 @@ impl Ends {
         [1.0, -1.0]
             .map(|side| {
                 let direction = self.toward_center * cosine + self.sideways * (side * (1.0 - cosine * cosine).sqrt());
-                // If the sphere is a plane, its center is infinitely far, and the plane is its own image.
+                // If the sphere is a plane, its center is infinitely far, and the plane is its own
+                // image.
                 if self.curvature == 0.0 {
                     Center { direction, nearness: 1.0 / reach, normal: self.toward_center }
                 } else {
@@ -362,8 +374,8 @@ mod tests {
     use super::*;
     use crate::TrigonometricCurve;
 
-    /// Figure 2 of the paper: by the symmetry of a helix segment about its midpoint, the planar tangents are
-    /// parallel, and the cubic does not have an inflection.
+    /// Figure 2 of the paper: by the symmetry of a helix segment about its midpoint, the planar
+    /// tangents are parallel, and the cubic does not have an inflection.
     #[test]
     fn published_centers_fail_on_every_part_of_a_helix() {
         let helix = TrigonometricCurve::helix(1.0, 0.5, (0.0, std::f64::consts::PI));

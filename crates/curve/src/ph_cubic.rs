@@ -2,13 +2,13 @@
 //! rotation-minimizing frame in closed form.
 //!
 //! Source: C. Mäurer, B. Jüttler, Rational approximation of rotation minimizing frames using
-//! Pythagorean-hodograph cubics, 1999, section 3. Symbols of the paper: L₁, L₂, L₃ are `lengths`, θ is the angle
-//! between neighboring sides of the control polygon, and Ω is the angle from the Frenet frame to the
-//! rotation-minimizing frame.
+//! Pythagorean-hodograph cubics, 1999, section 3. Symbols of the paper: L₁, L₂, L₃ are `lengths`, θ
+//! is the angle between neighboring sides of the control polygon, and Ω is the angle from the
+//! Frenet frame to the rotation-minimizing frame.
 //!
-//! Deviations: the paper does not specify the sign of ψ; this module uses that of −det(Δb₁, Δb₂, Δb₃).
-//! Equation (30) mixes a definite integral with an antiderivative; this module evaluates the difference in a
-//! form without cancellation.
+//! Deviations: the paper does not specify the sign of ψ; this module uses that of −det(Δb₁, Δb₂,
+//! Δb₃). Equation (30) mixes a definite integral with an antiderivative; this module evaluates the
+//! difference in a form without cancellation.
 
 use glam::DVec3;
 
@@ -23,14 +23,14 @@ pub use hermite::{HermiteError, PhCubicError};
 pub use rational_rotation::RationalRotation;
 pub use spline::{PhSpline, PhSplineError};
 
-/// Largest ratio of height to length of the control polygon of a straight cubic. Larger: the constant frame of
-/// such a cubic visibly leaves the normal plane. Smaller: rounding, amplified by one over the square of this,
-/// determines the rotation of the Frenet frame.
+/// Largest ratio of height to length of the control polygon of a straight cubic. Larger: the
+/// constant frame of such a cubic visibly leaves the normal plane. Smaller: rounding, amplified by
+/// one over the square of this, determines the rotation of the Frenet frame.
 const STRAIGHT: f64 = 1e-5;
 
-/// Largest such ratio for which exact frames use double reflection. Its error is the fifth power of the ratio
-/// divided by several hundred. Larger: this error becomes visible. Smaller: the rounding of the Frenet frame
-/// becomes visible.
+/// Largest such ratio for which exact frames use double reflection. Its error is the fifth power of
+/// the ratio divided by several hundred. Larger: this error becomes visible. Smaller: the rounding
+/// of the Frenet frame becomes visible.
 const NEARLY_STRAIGHT: f64 = 1e-3;
 
 /// A Pythagorean-hodograph cubic over [0, 1].
@@ -50,8 +50,8 @@ const NEARLY_STRAIGHT: f64 = 1e-3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhCubic {
     start: DVec3,
-    /// Sides of the control polygon. Stored instead of its corners, because the rounding of positions would
-    /// perturb short sides.
+    /// Sides of the control polygon. Stored instead of its corners, because the rounding of
+    /// positions would perturb short sides.
     sides: [DVec3; 3],
     /// Lengths of the three sides of the control polygon.
     lengths: [f64; 3],
@@ -71,8 +71,8 @@ impl PhCubic {
         let middle = second.dot(first) / lengths[0];
         // Both angles of the polygon are θ. Use the one between the first two sides.
         let height = second.cross(first).length() / lengths[0];
-        // det = ±2 L₂² sin²θ √(L₁L₃ − L₂²). Obtain the root from the determinant, because the difference L₁L₃ − L₂²
-        // cancels on flat curves.
+        // det = ±2 L₂² sin²θ √(L₁L₃ − L₂²). Obtain the root from the determinant, because the
+        // difference L₁L₃ − L₂² cancels on flat curves.
         let determinant = first.dot(second.cross(third));
         let is_straight = height <= STRAIGHT * lengths.iter().sum::<f64>();
         let twist = if is_straight { 0.0 } else { -determinant / (2.0 * height * height) };
@@ -124,17 +124,20 @@ impl PhCubic {
         -6.0 * self.twist / (speed * speed)
     }
 
-    /// Returns true if the curve is straight up to 1e-5 of its length. Its Frenet frame is then undefined.
+    /// Returns true if the curve is straight up to 1e-5 of its length. Its Frenet frame is then
+    /// undefined.
     pub fn is_straight(&self) -> bool {
         self.height <= STRAIGHT * self.polygon_length()
     }
 
-    /// Constant k of equation (33), in [0, 1): 2k is the factor of the arctangent in Ω. Zero for planar curves.
+    /// Constant k of equation (33), in [0, 1): 2k is the factor of the arctangent in Ω. Zero for
+    /// planar curves.
     pub fn rotation_factor(&self) -> f64 {
         if self.is_straight() { 0.0 } else { self.twist.abs() / libm::hypot(self.twist, self.height) }
     }
 
-    /// Ω(v) − Ω(0), radians: rotation of a rotation-minimizing frame relative to the Frenet frame (equation 30).
+    /// Ω(v) − Ω(0), radians: rotation of a rotation-minimizing frame relative to the Frenet frame
+    /// (equation 30).
     pub fn rotation_to(&self, v: f64) -> f64 {
         if self.is_straight() {
             return 0.0;
@@ -149,7 +152,8 @@ impl PhCubic {
         6.0 * self.twist / self.speed(v)
     }
 
-    /// Frenet frame at `v`. A straight line has no Frenet frame; the result is then a frame that does not rotate.
+    /// Frenet frame at `v`. A straight line has no Frenet frame; the result is then a frame that
+    /// does not rotate.
     pub fn frenet_frame(&self, v: f64) -> Frame {
         let jet = self.jet(v);
         let tangent = jet.tangent();
@@ -158,11 +162,12 @@ impl PhCubic {
         Frame::new(normal.reject_from_normalized(tangent).normalize(), tangent)
     }
 
-    /// Exact rotation-minimizing frames at ascending parameters. The reference vector at v = 0 is the component
-    /// of `reference` normal to the tangent.
+    /// Exact rotation-minimizing frames at ascending parameters. The reference vector at v = 0 is
+    /// the component of `reference` normal to the tangent.
     ///
     /// # Errors
-    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
+    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first
+    /// tangent.
     pub fn exact_frames(&self, parameters: &[f64], reference: DVec3) -> Result<Vec<Frame>, FrameError> {
         if self.height <= NEARLY_STRAIGHT * self.polygon_length() {
             let start = self.jet(0.0);

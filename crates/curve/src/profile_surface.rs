@@ -1,10 +1,12 @@
-//! Surfaces swept by a rigid planar cross-section along a spine, and their regularity and curvature.
+//! Surfaces swept by a rigid planar cross-section along a spine, and their regularity and
+//! curvature.
 //!
-//! With rotation-minimizing frames, these are the *profile surfaces* of the paper: their parameter lines are lines
-//! of curvature, a straight cross-section gives a developable surface, and their offsets are profile surfaces.
+//! With rotation-minimizing frames, these are the *profile surfaces* of the paper: their parameter
+//! lines are lines of curvature, a straight cross-section gives a developable surface, and their
+//! offsets are profile surfaces.
 //!
-//! Source: Mäurer and Jüttler 1999, section 2. Correction: the normal (10) and the curvature (11) of the paper have
-//! opposite signs. With the normal (10), K = −κ_u κ_v cos θ.
+//! Source: Mäurer and Jüttler 1999, section 2. Correction: the normal (10) and the curvature (11)
+//! of the paper have opposite signs. With the normal (10), K = −κ_u κ_v cos θ.
 
 use glam::{DVec2, DVec3};
 
@@ -59,8 +61,8 @@ pub fn sweep(stations: &[(DVec3, Frame)], cross_section: &[DVec2]) -> PointGrid 
     sweep_varying(stations, cross_section.len(), |_, column| cross_section[column])
 }
 
-/// Sweeps a cross-section of `columns` points that varies along the spine. `cross_section(station, column)`
-/// returns coordinates along r and s.
+/// Sweeps a cross-section of `columns` points that varies along the spine. `cross_section(station,
+/// column)` returns coordinates along r and s.
 pub fn sweep_varying(
     stations: &[(DVec3, Frame)],
     columns: usize,
@@ -77,14 +79,15 @@ pub fn sweep_varying(
     PointGrid { points, rows: stations.len(), columns }
 }
 
-/// Margin of condition (9): 1 − κ n · p for the point p of the cross-section. The profile surface is regular if the
-/// margin is positive. It is also the ratio of the speed of the swept point to the speed of the spine.
+/// Margin of condition (9): 1 − κ n · p for the point p of the cross-section. The profile surface
+/// is regular if the margin is positive. It is also the ratio of the speed of the swept point to
+/// the speed of the spine.
 pub fn regularity(spine: &CurveJet, frame: &Frame, point: DVec2) -> f64 {
     1.0 - spine.curvature_vector().dot(frame.offset(point))
 }
 
-/// Radius of the largest disk in which every cross-section gives a regular surface: 1/κ_max over `jets`, infinite for
-/// a straight spine.
+/// Radius of the largest disk in which every cross-section gives a regular surface: 1/κ_max over
+/// `jets`, infinite for a straight spine.
 pub fn safe_cross_section_radius(jets: &[CurveJet]) -> f64 {
     1.0 / jets.iter().map(CurveJet::curvature).fold(0.0, f64::max)
 }
@@ -107,21 +110,23 @@ impl CrossSectionJet {
         if speed == 0.0 { 0.0 } else { self.first.perp_dot(self.second) / (speed * speed * speed) }
     }
 
-    /// Right-hand normal (c₃′, −c₂′)/|c′|, which is also the normal of the profile surface (equation 10).
+    /// Right-hand normal (c₃′, −c₂′)/|c′|, which is also the normal of the profile surface
+    /// (equation 10).
     pub fn normal(&self) -> DVec2 {
         DVec2::new(self.first.y, -self.first.x).normalize_or_zero()
     }
 }
 
-/// Gaussian curvature of the profile surface, K = −κ_u κ_v cos θ (equation 13 with the sign of the normal (10)).
-/// Returns `None` if the surface is singular.
+/// Gaussian curvature of the profile surface, K = −κ_u κ_v cos θ (equation 13 with the sign of the
+/// normal (10)). Returns `None` if the surface is singular.
 pub fn profile_surface_curvature(spine: &CurveJet, frame: &Frame, cross_section: &CrossSectionJet) -> Option<f64> {
     let margin = regularity(spine, frame, cross_section.position);
     if margin == 0.0 {
         return None;
     }
-    // κ_v cos θ is the component of the curvature vector of the line u = const along the surface normal. The tangent of
-    // that line is parallel to the tangent of the spine, and its speed is scaled by the margin.
+    // κ_v cos θ is the component of the curvature vector of the line u = const along the surface
+    // normal. The tangent of that line is parallel to the tangent of the spine, and its speed is
+    // scaled by the margin.
     let across = spine.curvature_vector().dot(frame.offset(cross_section.normal())) / margin;
     Some(-cross_section.curvature() * across)
 }

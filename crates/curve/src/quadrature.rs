@@ -9,12 +9,12 @@ const NODES: [(f64, f64); 5] = [
     (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
 ];
 
-/// Largest relative difference between a panel and the sum of its halves. Larger: reference values lose digits.
-/// Smaller: rounding errors force the recursion to its full depth.
+/// Largest relative difference between a panel and the sum of its halves. Larger: reference values
+/// lose digits. Smaller: rounding errors force the recursion to its full depth.
 const TOLERANCE: f64 = 1e-14;
 
-/// Largest number of halvings of a panel. Larger: only more time at discontinuities. Smaller: narrow peaks are
-/// not resolved.
+/// Largest number of halvings of a panel. Larger: only more time at discontinuities. Smaller:
+/// narrow peaks are not resolved.
 const DEPTH: u32 = 18;
 
 /// Integral of `function` over [a, b] by the ten-point rule: exact for polynomials of degree 19.
@@ -28,7 +28,8 @@ pub(crate) fn gauss(function: &mut impl FnMut(f64) -> f64, a: f64, b: f64) -> f6
     half * sum
 }
 
-/// Abscissae and weights of the composite ten-point rule with `panels` equal panels on [a, b], ascending.
+/// Abscissae and weights of the composite ten-point rule with `panels` equal panels on [a, b],
+/// ascending.
 pub(crate) fn gauss_points(a: f64, b: f64, panels: usize) -> Vec<(f64, f64)> {
     let width = (b - a) / panels as f64;
     let half = 0.5 * width;
@@ -41,10 +42,11 @@ pub(crate) fn gauss_points(a: f64, b: f64, panels: usize) -> Vec<(f64, f64)> {
     points
 }
 
-/// Integral of `function` over [a, b]. Panels are halved until they agree with the sum of their halves.
+/// Integral of `function` over [a, b]. Panels are halved until they agree with the sum of their
+/// halves.
 ///
-/// `scale` is the size of the whole integral, to which the error is relative. Panels that contribute less than
-/// its rounding error are not refined.
+/// `scale` is the size of the whole integral, to which the error is relative. Panels that
+/// contribute less than its rounding error are not refined.
 pub(crate) fn integrate(function: &mut impl FnMut(f64) -> f64, a: f64, b: f64, scale: f64) -> f64 {
     let whole = gauss(function, a, b);
     refine(function, a, b, whole, scale, DEPTH)

@@ -7,21 +7,23 @@ use crate::Curve;
 /// Reach of a curve, estimated from samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// The smaller of the two radii, model units. Within this distance, the nearest point is unique.
+    /// The smaller of the two radii, model units. Within this distance, the nearest point is
+    /// unique.
     pub distance: f64,
     /// Smallest radius of curvature, model units.
     pub curvature_radius: f64,
-    /// Smallest distance at which two separate parts of the curve are equally near, model units, by Federer's
-    /// formula over pairs of samples.
+    /// Smallest distance at which two separate parts of the curve are equally near, model units, by
+    /// Federer's formula over pairs of samples.
     pub bottleneck_radius: f64,
 }
 
-/// Estimates the reach of `curve` from `samples` points (at least 8). The time is quadratic in their number.
+/// Estimates the reach of `curve` from `samples` points (at least 8). The time is quadratic in
+/// their number.
 ///
-/// Federer's formula: the reach is the infimum over pairs of points a, b of |b − a|² / (2 d), where d is the
-/// distance of b − a from the tangent line at a. The estimate from samples is an upper bound, with an error
-/// of second order in their spacing. At the ends of an open curve, a half-line replaces the tangent line. A
-/// straight line has infinite reach.
+/// Federer's formula: the reach is the infimum over pairs of points a, b of |b − a|² / (2 d), where
+/// d is the distance of b − a from the tangent line at a. The estimate from samples is an upper
+/// bound, with an error of second order in their spacing. At the ends of an open curve, a half-line
+/// replaces the tangent line. A straight line has infinite reach.
 ///
 /// Source: H. Federer, Curvature measures, 1959, theorem 4.18.
 ///
@@ -47,7 +49,8 @@ pub fn reach(curve: &impl Curve, samples: usize) -> Reach {
         for other in &jets {
             let chord = other.position - jet.position;
             let along = chord.dot(tangent);
-            // At an end, the tangent cone is a half-line. The distance from its start applies to points behind it.
+            // At an end, the tangent cone is a half-line. The distance from its start applies to
+            // points behind it.
             let is_behind = (is_start && along < 0.0) || (is_end && along > 0.0);
             let across = if is_behind { chord } else { chord - tangent * along };
             bottleneck = bottleneck.min(radius(chord, across));
@@ -86,7 +89,8 @@ mod tests {
 
     #[test]
     fn flat_helix_is_limited_by_its_neighboring_turns() {
-        // The turns are 0.2 apart, so the reach is half of that, up to a term of second order in 0.2.
+        // The turns are 0.2 apart, so the reach is half of that, up to a term of second order in
+        // 0.2.
         let helix = TrigonometricCurve::helix(1.0, 0.2 / TAU, (0.0, 3.0 * TAU));
         let reach = reach(&helix, 1200);
         assert!((reach.distance - 0.1).abs() < 1e-3, "{reach:?}");

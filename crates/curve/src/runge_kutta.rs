@@ -5,11 +5,12 @@ use glam::DVec3;
 use crate::frame::{FrameError, orthogonal_reference};
 use crate::{Curve, Frame};
 
-/// Computes frames along `curve` at the given parameters, with one Runge–Kutta step between neighbors.
+/// Computes frames along `curve` at the given parameters, with one Runge–Kutta step between
+/// neighbors.
 ///
-/// As in Wang et al. 2008, the integrated r is neither projected nor normalized. The returned frames are
-/// orthonormal. The form (t × t′) × r of equation (6) gives different numbers, because the two forms agree only
-/// while r is normal to t.
+/// As in Wang et al. 2008, the integrated r is neither projected nor normalized. The returned
+/// frames are orthonormal. The form (t × t′) × r of equation (6) gives different numbers, because
+/// the two forms agree only while r is normal to t.
 ///
 /// # Errors
 /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.

@@ -6,9 +6,9 @@ use crate::spline::COORDINATE_LIMIT;
 use crate::tangents::{TangentError, TangentRule, estimate_tangents};
 use crate::{Curve, CurveJet};
 
-/// Largest ratio of the closing chord of a closed spine to its longest other chord. Larger: the gap of an
-/// open curve is accepted as a segment, and the frame jumps across it. Smaller: coarse closed data with
-/// one long side are rejected.
+/// Largest ratio of the closing chord of a closed spine to its longest other chord. Larger: the gap
+/// of an open curve is accepted as a segment, and the frame jumps across it. Smaller: coarse closed
+/// data with one long side are rejected.
 const CLOSING_GAP: f64 = 4.0;
 
 /// A sampled curve: at least two finite points with a unit tangent each.
@@ -126,8 +126,8 @@ impl Spine {
         Ok(Self { points, tangents, closed })
     }
 
-    /// Samples `curve` at `segments` equal steps of its parameter, with its tangents. The spine is closed
-    /// if the curve is.
+    /// Samples `curve` at `segments` equal steps of its parameter, with its tangents. The spine is
+    /// closed if the curve is.
     ///
     /// # Errors
     /// As [`new`](Self::new). A cusp at a sample has a zero tangent.
@@ -197,8 +197,8 @@ impl Spine {
         if self.closed && station == self.points.len() { 0 } else { station }
     }
 
-    /// Reverses the spine: the order of the stations and the direction of the tangents. A closed spine keeps
-    /// its first point.
+    /// Reverses the spine: the order of the stations and the direction of the tangents. A closed
+    /// spine keeps its first point.
     pub fn reversed(&self) -> Self {
         let mut points = self.points.clone();
         let mut tangents: Vec<DVec3> = self.tangents.iter().map(|&tangent| -tangent).collect();
@@ -226,9 +226,9 @@ impl Spine {
             .collect()
     }
 
-    /// Default reference vector for the first frame: the discrete Frenet normal at the first point, from a
-    /// difference stencil over the first tangents. If the tangent does not turn, the result is
-    /// [`perpendicular`] to it.
+    /// Default reference vector for the first frame: the discrete Frenet normal at the first point,
+    /// from a difference stencil over the first tangents. If the tangent does not turn, the result
+    /// is [`perpendicular`] to it.
     pub fn default_reference(&self) -> DVec3 {
         let count = self.tangents.len();
         let derivative = if self.closed && count >= 5 {
@@ -241,8 +241,8 @@ impl Spine {
             self.tangents[1] - self.tangents[0]
         };
         let across = derivative.reject_from_normalized(self.tangents[0]);
-        // The stencils return twelve times the turn per step, so this is a turn of about 1e-10 radians. Below
-        // it, the direction is rounding error of the input.
+        // The stencils return twelve times the turn per step, so this is a turn of about 1e-10
+        // radians. Below it, the direction is rounding error of the input.
         if across.length() > 1e-9 { across.normalize() } else { perpendicular(self.tangents[0]) }
     }
 }
@@ -255,8 +255,8 @@ pub fn uniform_parameters(curve: &impl Curve, segments: usize) -> Vec<f64> {
         .collect()
 }
 
-/// A unit vector perpendicular to the unit vector `tangent`, in the plane of `tangent` and the coordinate
-/// axis of its smallest component.
+/// A unit vector perpendicular to the unit vector `tangent`, in the plane of `tangent` and the
+/// coordinate axis of its smallest component.
 pub fn perpendicular(tangent: DVec3) -> DVec3 {
     let size = tangent.abs();
     let axis = if size.x <= size.y && size.x <= size.z {
@@ -331,7 +331,8 @@ mod tests {
 
     #[test]
     fn default_reference_is_the_frenet_normal_of_a_curved_spine() {
-        // One-sided differences of fourth order: the error is h⁴/5 times the fifth derivative, with h = 0.06.
+        // One-sided differences of fourth order: the error is h⁴/5 times the fifth derivative, with
+        // h = 0.06.
         let helix = TrigonometricCurve::helix(1.0, 0.5, (0.0, 6.0));
         let reference = Spine::sample(&helix, 100).unwrap().default_reference();
         assert!((reference - helix.jet(0.0).normal().unwrap()).length() < 2e-5);

@@ -7,7 +7,8 @@ use crate::{Curve, CurveJet};
 /// Parameter steps between the points of a [`CubicSpline`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Parametrization {
-    /// Square root of the chord: avoids loops and cusps between unevenly spaced points. The usual choice.
+    /// Square root of the chord: avoids loops and cusps between unevenly spaced points. The usual
+    /// choice.
     #[default]
     Centripetal,
     /// The chord: closest to arc length, and most accurate for dense points.
@@ -17,11 +18,12 @@ pub enum Parametrization {
 /// Condition at the ends of an open [`CubicSpline`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum EndCondition {
-    /// The second derivative is zero: the least bending, with an error of second order near the ends.
+    /// The second derivative is zero: the least bending, with an error of second order near the
+    /// ends.
     #[default]
     Natural,
-    /// The first two pieces are one cubic, and so are the last two: fourth order up to the ends, for dense
-    /// samples of a smooth curve. Three points give a parabola, two give a line.
+    /// The first two pieces are one cubic, and so are the last two: fourth order up to the ends,
+    /// for dense samples of a smooth curve. Three points give a parabola, two give a line.
     NotAKnot,
 }
 
@@ -58,8 +60,8 @@ pub enum SplineError {
     },
 }
 
-/// Largest coordinate. Larger: sixth powers of lengths, as in the torsion, overflow. Smaller: no realistic
-/// data are rejected down to about 1e30.
+/// Largest coordinate. Larger: sixth powers of lengths, as in the torsion, overflow. Smaller: no
+/// realistic data are rejected down to about 1e30.
 pub(crate) const COORDINATE_LIMIT: f64 = 1e50;
 
 /// A cubic spline with continuous second derivative through given points, open or closed.
@@ -77,7 +79,8 @@ pub(crate) const COORDINATE_LIMIT: f64 = 1e50;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CubicSpline {
-    /// Parameters of the points. A closed spline has one more, at which it returns to the first point.
+    /// Parameters of the points. A closed spline has one more, at which it returns to the first
+    /// point.
     knots: Vec<f64>,
     /// Coefficients of 1, w, w², w³ of each piece, with w = parameter − first knot of the piece.
     pieces: Vec<[DVec3; 4]>,
@@ -100,16 +103,16 @@ impl CubicSpline {
         Ok(Self::open_with(points, &spacings, end_condition))
     }
 
-    /// Creates the open spline that passes through each of `points` at the given parameter. The domain is
-    /// shifted to start at zero. Neighbors can coincide.
+    /// Creates the open spline that passes through each of `points` at the given parameter. The
+    /// domain is shifted to start at zero. Neighbors can coincide.
     ///
     /// Splines with the same parameters depend linearly on their points.
     ///
     /// # Errors
     /// - [`SplineError::TooFewPoints`] if there are fewer than two points.
     /// - [`SplineError::NotFinite`] if a coordinate is NaN, infinite or beyond 1e50.
-    /// - [`SplineError::Parameter`] if a parameter is missing, not finite, or not greater than the previous
-    ///   one.
+    /// - [`SplineError::Parameter`] if a parameter is missing, not finite, or not greater than the
+    ///   previous one.
     pub fn open_at(points: &[DVec3], parameters: &[f64], end_condition: EndCondition) -> Result<Self, SplineError> {
         check_points(points, 2)?;
         let ascends = |index: usize| {
@@ -125,8 +128,8 @@ impl CubicSpline {
     fn open_with(points: &[DVec3], spacings: &[f64], end_condition: EndCondition) -> Self {
         let count = points.len();
         let slopes: Vec<DVec3> = (0..count - 1).map(|i| (points[i + 1] - points[i]) / spacings[i]).collect();
-        // The unknowns are the second derivatives at the points. Rows 1 … count − 2 of the system express the
-        // continuity of the first derivative.
+        // The unknowns are the second derivatives at the points. Rows 1 … count − 2 of the system
+        // express the continuity of the first derivative.
         let mut seconds = vec![DVec3::ZERO; count];
         let inner = count - 2;
         if inner > 0 {
@@ -144,8 +147,9 @@ impl CubicSpline {
                 // The spline is a parabola: all second derivatives are equal.
                 diagonal[0] += spacings[0] + spacings[1];
             } else if not_a_knot {
-                // The third derivative is continuous at the second and the second-to-last point. This gives the
-                // second derivatives at the ends, which are eliminated from the first and last rows.
+                // The third derivative is continuous at the second and the second-to-last point.
+                // This gives the second derivatives at the ends, which are eliminated from the
+                // first and last rows.
                 let (first, second) = (spacings[0], spacings[1]);
                 diagonal[0] += first * (first + second) / second;
                 upper[0] -= first * first / second;
@@ -197,8 +201,8 @@ impl CubicSpline {
         Self { knots, pieces, closed }
     }
 
-    /// Ascending parameters of the points, starting at zero. A closed spline has one more, at which it returns to
-    /// the first point.
+    /// Ascending parameters of the points, starting at zero. A closed spline has one more, at which
+    /// it returns to the first point.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
@@ -212,8 +216,9 @@ impl CubicSpline {
         })
     }
 
-    /// Interpolates linearly between this spline and `other` at the same parameters: `fraction` 0 gives this
-    /// spline, 1 gives `other`. The result is the spline through the interpolated points.
+    /// Interpolates linearly between this spline and `other` at the same parameters: `fraction` 0
+    /// gives this spline, 1 gives `other`. The result is the spline through the interpolated
+    /// points.
     ///
     /// # Panics
     /// If the knots differ, or if only one spline is closed.
@@ -223,8 +228,8 @@ impl CubicSpline {
         Self { pieces: self.pieces.iter().zip(&other.pieces).map(blend).collect(), ..self.clone() }
     }
 
-    /// Piece and local parameter of a parameter. The parameter is clamped (open) or wrapped (closed) into the
-    /// domain.
+    /// Piece and local parameter of a parameter. The parameter is clamped (open) or wrapped
+    /// (closed) into the domain.
     fn locate(&self, parameter: f64) -> (usize, f64) {
         let end = self.knots[self.pieces.len()];
         let parameter = if !self.closed {
@@ -296,8 +301,8 @@ fn check_points(points: &[DVec3], needed: usize) -> Result<(), SplineError> {
     }
 }
 
-/// Solves a tridiagonal system in place by elimination without pivoting. This is stable because the matrix is
-/// diagonally dominant.
+/// Solves a tridiagonal system in place by elimination without pivoting. This is stable because the
+/// matrix is diagonally dominant.
 fn solve_tridiagonal(lower: &[f64], diagonal: &[f64], upper: &[f64], right: &mut [DVec3]) {
     let count = diagonal.len();
     let mut pivots = diagonal.to_vec();
@@ -314,8 +319,8 @@ fn solve_tridiagonal(lower: &[f64], diagonal: &[f64], upper: &[f64], right: &mut
     }
 }
 
-/// Second derivatives of the closed spline. Solves a cyclic tridiagonal system with the Sherman–Morrison
-/// formula.
+/// Second derivatives of the closed spline. Solves a cyclic tridiagonal system with the
+/// Sherman–Morrison formula.
 fn solve_cyclic(spacings: &[f64], slopes: &[DVec3]) -> Vec<DVec3> {
     let count = spacings.len();
     let before = |i: usize| (i + count - 1) % count;
@@ -324,7 +329,8 @@ fn solve_cyclic(spacings: &[f64], slopes: &[DVec3]) -> Vec<DVec3> {
     let mut diagonal: Vec<f64> = (0..count).map(|i| 2.0 * (spacings[before(i)] + spacings[i])).collect();
     let mut right: Vec<DVec3> = (0..count).map(|i| 6.0 * (slopes[i] - slopes[before(i)])).collect();
     // Both corner entries of the matrix equal `corner`. Write the matrix as tridiagonal + u vᵀ with
-    // u = (gamma, 0, …, corner) and v = (1, 0, …, corner / gamma), which changes two diagonal entries.
+    // u = (gamma, 0, …, corner) and v = (1, 0, …, corner / gamma), which changes two diagonal
+    // entries.
     let corner = spacings[count - 1];
     let gamma = -diagonal[0];
     diagonal[0] -= gamma;
@@ -367,7 +373,8 @@ mod tests {
                 if i > 0 && (spline.is_closed() || i + 1 < points.len()) {
                     let step = 1e-9;
                     let (before, after) = (spline.jet(knot - step), spline.jet(knot + step));
-                    // The difference is the third derivative times 2e-9, and the third derivative is below 10.
+                    // The difference is the third derivative times 2e-9, and the third derivative
+                    // is below 10.
                     assert!((before.first - after.first).length() < 1e-7);
                     assert!((before.second - after.second).length() < 1e-7);
                 }

@@ -1,28 +1,28 @@
 //! Estimation of tangents from points.
 //!
-//! Source: Wang et al. 2008, section 6.1, and Zheng's thesis, section 7.1. Corrections: the direction error
-//! of the five-point stencils is of fourth order, not of fifth order as printed. The circle weights printed
-//! in the thesis give the bisector of the two chords; the weights in this file give the tangent of the
-//! circle.
+//! Source: Wang et al. 2008, section 6.1, and Zheng's thesis, section 7.1. Corrections: the
+//! direction error of the five-point stencils is of fourth order, not of fifth order as printed.
+//! The circle weights printed in the thesis give the bisector of the two chords; the weights in
+//! this file give the tangent of the circle.
 
 use glam::DVec3;
 
 /// Rule by which [`Spine::from_points`](crate::Spine::from_points) estimates tangents.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum TangentRule<'a> {
-    /// [`Uniform`](Self::Uniform) if the spacing of the points varies as smoothly as that of samples at equal
-    /// steps of a smooth parameter, otherwise [`ArcLength`](Self::ArcLength).
+    /// [`Uniform`](Self::Uniform) if the spacing of the points varies as smoothly as that of
+    /// samples at equal steps of a smooth parameter, otherwise [`ArcLength`](Self::ArcLength).
     #[default]
     Automatic,
     /// Five-point stencils for points at equal steps of some smooth parameter: fourth order.
     Uniform,
     /// Five-point stencils on estimated arc lengths, for points at any spacing: fourth order.
     ArcLength,
-    /// Five-point stencils on the given ascending parameters, one per point: fourth order. A closed curve
-    /// needs one more parameter, at which it returns to the first point.
+    /// Five-point stencils on the given ascending parameters, one per point: fourth order. A closed
+    /// curve needs one more parameter, at which it returns to the first point.
     Parameters(&'a [f64]),
-    /// Tangent of the circle through each point and its neighbors, for any spacing: second order, exact on
-    /// circles.
+    /// Tangent of the circle through each point and its neighbors, for any spacing: second order,
+    /// exact on circles.
     Circle,
 }
 
@@ -51,17 +51,18 @@ pub enum TangentError {
     },
 }
 
-/// Points count as uniform samples if the second differences of the logarithm of their spacing are at most
-/// this multiple of the squared turning angle. Larger: jittered points get uniform stencils, which do not
-/// converge on them. Smaller: coarse uniform samples get arc-length stencils, whose error on such samples
-/// is about three times as large.
+/// Points count as uniform samples if the second differences of the logarithm of their spacing are
+/// at most this multiple of the squared turning angle. Larger: jittered points get uniform
+/// stencils, which do not converge on them. Smaller: coarse uniform samples get arc-length
+/// stencils, whose error on such samples is about three times as large.
 const ROUGHNESS: f64 = 0.25;
 
-/// Smallest length of a tangent relative to the largest weighted chord. Larger: strongly turning samples
-/// are rejected. Smaller: rounding errors are accepted as a direction.
+/// Smallest length of a tangent relative to the largest weighted chord. Larger: strongly turning
+/// samples are rejected. Smaller: rounding errors are accepted as a direction.
 const CANCELLATION: f64 = 1e-10;
 
-/// Unit tangents at `points`. The caller has checked that there are enough points and that all are finite.
+/// Unit tangents at `points`. The caller has checked that there are enough points and that all are
+/// finite.
 pub(crate) fn estimate_tangents(
     points: &[DVec3],
     closed: bool,
@@ -124,8 +125,8 @@ impl Samples<'_> {
         (0..count)
             .map(|index| {
                 let i = index as isize;
-                // Weights by offset from this point. The stencils at the end mirror those at the start, with
-                // opposite sign.
+                // Weights by offset from this point. The stencils at the end mirror those at the
+                // start, with opposite sign.
                 let (forward, weights): (bool, &[(isize, f64)]) = match (index, last - index, last) {
                     _ if self.closed => (true, &[(-2, 1.0), (-1, -8.0), (1, 8.0), (2, -1.0)]),
                     (_, _, 1) => (index == 0, &[(1, 1.0)]),
@@ -153,7 +154,8 @@ impl Samples<'_> {
             .collect()
     }
 
-    /// Tangents from the derivative of the polynomial through five neighbors, at ascending parameters.
+    /// Tangents from the derivative of the polynomial through five neighbors, at ascending
+    /// parameters.
     fn on_parameters(&self, parameters: &[f64]) -> Result<Vec<DVec3>, TangentError> {
         let count = self.points.len();
         let width = count.min(5);
@@ -175,7 +177,8 @@ impl Samples<'_> {
                 let mut scale: f64 = 0.0;
                 let mut sum = DVec3::ZERO;
                 for &k in neighbors.iter().filter(|&&k| k != i) {
-                    // Derivative at point i of the Lagrange polynomial that is one at k and zero at the others.
+                    // Derivative at point i of the Lagrange polynomial that is one at k and zero at
+                    // the others.
                     let mut weight = 1.0 / (parameter(k) - at);
                     for &j in neighbors.iter().filter(|&&j| j != k && j != i) {
                         weight *= (at - parameter(j)) / (parameter(k) - parameter(j));
@@ -202,8 +205,8 @@ impl Samples<'_> {
         Ok(())
     }
 
-    /// Tangents from stencils on chord lengths, then refined twice on arc lengths. The arc lengths follow from
-    /// the chords and the turning of the previous tangents.
+    /// Tangents from stencils on chord lengths, then refined twice on arc lengths. The arc lengths
+    /// follow from the chords and the turning of the previous tangents.
     fn arc_length(&self) -> Result<Vec<DVec3>, TangentError> {
         let chords = self.chord_lengths()?;
         let mut tangents = self.on_parameters(&cumulative(&chords))?;
@@ -214,7 +217,8 @@ impl Samples<'_> {
                 .map(|(i, chord)| {
                     let (start, end) = (tangents[i], tangents[(i + 1) % tangents.len()]);
                     let turning = libm::atan2(start.cross(end).length(), start.dot(end));
-                    // To leading order, an arc of a circle is longer than its chord by the factor 1 + θ²/24.
+                    // To leading order, an arc of a circle is longer than its chord by the factor 1
+                    // + θ²/24.
                     chord * (1.0 + turning * turning / 24.0)
                 })
                 .collect();

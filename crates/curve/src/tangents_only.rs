@@ -1,15 +1,15 @@
 //! Estimation of chords from tangents, for double reflection without points.
 //!
-//! Source: Wang et al. 2008, equation (17): ∫ t du over the segment with the Adams–Moulton weights of order
-//! four. The paper omits the formulas for the two ends. They use the same quadrature with the stencil
-//! shifted inward.
+//! Source: Wang et al. 2008, equation (17): ∫ t du over the segment with the Adams–Moulton weights
+//! of order four. The paper omits the formulas for the two ends. They use the same quadrature with
+//! the stencil shifted inward.
 
 use glam::DVec3;
 
 use crate::Spine;
 
-/// Estimates a vector parallel to the chord of `segment` from the tangents of samples at equal steps of a
-/// smooth parameter. Only its direction is meaningful.
+/// Estimates a vector parallel to the chord of `segment` from the tangents of samples at equal
+/// steps of a smooth parameter. Only its direction is meaningful.
 pub fn chord_from_tangents(spine: &Spine, segment: usize) -> DVec3 {
     let tangents = spine.tangents();
     let count = tangents.len();

@@ -1,10 +1,10 @@
-//! Twist: additional rotation about the tangent, distributed so that frames meet conditions with the
-//! smallest motion.
+//! Twist: additional rotation about the tangent, distributed so that frames meet conditions with
+//! the smallest motion.
 //!
-//! Source: Wang et al. 2008, section 6.3. If a frame is rotated by α(s) relative to a rotation-minimizing
-//! frame, its squared angular velocity is κ² + α′². The total angular speed (equation 21) is smallest if
-//! α′ is proportional to the curvature. The total squared angular speed (equation 24) is smallest if α′
-//! is constant.
+//! Source: Wang et al. 2008, section 6.3. If a frame is rotated by α(s) relative to a
+//! rotation-minimizing frame, its squared angular velocity is κ² + α′². The total angular speed
+//! (equation 21) is smallest if α′ is proportional to the curvature. The total squared angular
+//! speed (equation 24) is smallest if α′ is constant.
 
 use std::f64::consts::{PI, TAU};
 
@@ -31,13 +31,13 @@ pub enum TwistLaw {
     /// Proportional to arc length: the smallest total squared angular speed. The usual choice.
     #[default]
     ArcLength,
-    /// Proportional to the turning of the tangent: the smallest total angular speed. On a straight spine,
-    /// where all monotonic laws are equally good, proportional to arc length.
+    /// Proportional to the turning of the tangent: the smallest total angular speed. On a straight
+    /// spine, where all monotonic laws are equally good, proportional to arc length.
     Curvature,
 }
 
-/// Largest total turning of a straight spine, radians. Larger: gentle curves lose the curvature law.
-/// Smaller: the rounding of the tangents determines the distribution of the twist.
+/// Largest total turning of a straight spine, radians. Larger: gentle curves lose the curvature
+/// law. Smaller: the rounding of the tangents determines the distribution of the twist.
 const STRAIGHT: f64 = 1e-9;
 
 /// Frames with twist.
@@ -110,8 +110,8 @@ pub fn closing_angle(frames: &[Frame]) -> f64 {
     frames[frames.len() - 1].angle_to(frames[0].r)
 }
 
-/// Twists rotation-minimizing `frames` of a closed `spine` so that the last frame equals the first, with
-/// `turns` full turns in addition to the smallest rotation.
+/// Twists rotation-minimizing `frames` of a closed `spine` so that the last frame equals the first,
+/// with `turns` full turns in addition to the smallest rotation.
 ///
 /// # Panics
 /// If there is not one frame per station.
@@ -131,8 +131,8 @@ pub fn close_frames(spine: &Spine, frames: &[Frame], law: TwistLaw, turns: i32) 
     spread(spine, frames, closing_angle(frames) + TAU * f64::from(turns), law)
 }
 
-/// Twists rotation-minimizing `frames` so that the last reference vector points in `direction`, with
-/// `turns` full turns in addition to the smallest rotation (equations 18 and 19).
+/// Twists rotation-minimizing `frames` so that the last reference vector points in `direction`,
+/// with `turns` full turns in addition to the smallest rotation (equations 18 and 19).
 ///
 /// # Errors
 /// [`TwistError::Direction`] if `direction` has no component normal to the last tangent.
@@ -161,9 +161,9 @@ pub fn spread(spine: &Spine, frames: &[Frame], total: f64, law: TwistLaw) -> Twi
 /// Twists rotation-minimizing `frames` to meet each constraint, with the smallest rotation between
 /// neighboring constraints.
 ///
-/// On an open spine, the twist is constant before the first constraint and after the last. On a closed
-/// spine, the twist continues from the last constraint to the first, so that the frames close; the
-/// `turns` of the first constraint apply to this interval.
+/// On an open spine, the twist is constant before the first constraint and after the last. On a
+/// closed spine, the twist continues from the last constraint to the first, so that the frames
+/// close; the `turns` of the first constraint apply to this interval.
 ///
 /// # Errors
 /// - [`TwistError::Empty`] if `constraints` is empty.
@@ -219,8 +219,8 @@ pub fn meet_constraints(
         constraints.iter().zip(&angles).map(|(constraint, &angle)| (fractions[constraint.station], angle)).collect();
     let closing = if spine.is_closed() { closing_angle(frames) } else { 0.0 };
     if spine.is_closed() {
-        // After one round, the rotation-minimizing frame lags by the closing angle, and the first constraint
-        // applies again.
+        // After one round, the rotation-minimizing frame lags by the closing angle, and the first
+        // constraint applies again.
         let again = next_angle(last_angle, first_angle + closing, first.turns);
         knots.push((fractions[first.station] + 1.0, again));
         knots.insert(0, (fractions[last.station] - 1.0, last_angle - (again - first_angle)));
@@ -241,7 +241,8 @@ fn wrap(angle: f64) -> f64 {
 
 fn angle_to(frame: &Frame, direction: DVec3) -> Option<f64> {
     let across = direction.try_normalize()?.reject_from_normalized(frame.t);
-    // Ten thousand times the rounding error. Below it, the direction counts as parallel to the tangent.
+    // Ten thousand times the rounding error. Below it, the direction counts as parallel to the
+    // tangent.
     (across.length() > 1e-12).then(|| frame.angle_to(direction))
 }
 
@@ -274,7 +275,8 @@ pub fn total_angular_speed(spine: &Spine, angles: &[f64]) -> f64 {
         .sum()
 }
 
-/// Σ (turning² + Δα²)/chord, the discrete total squared angular speed (equation 24), per model unit.
+/// Σ (turning² + Δα²)/chord, the discrete total squared angular speed (equation 24), per model
+/// unit.
 pub fn total_squared_angular_speed(spine: &Spine, angles: &[f64]) -> f64 {
     spine
         .turning_angles()

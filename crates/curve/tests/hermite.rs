@@ -1,5 +1,5 @@
-//! Table 1 of Mäurer and Jüttler 1999 on seeded random data and on short arcs, with the correct signed λ₁ and λ₂ and
-//! with the printed absolute values.
+//! Table 1 of Mäurer and Jüttler 1999 on seeded random data and on short arcs, with the correct
+//! signed λ₁ and λ₂ and with the printed absolute values.
 #![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use glam::DVec3;
@@ -44,8 +44,8 @@ impl Data {
         ([first, last], [departure, self.chord - departure - arrival, arrival])
     }
 
-    /// Residual of conditions (17), relative to the squared size of the polygon. The squared length of the hodograph
-    /// must be the square of a quadratic polynomial.
+    /// Residual of conditions (17), relative to the squared size of the polygon. The squared length
+    /// of the hodograph must be the square of a quadratic polynomial.
     fn residual(&self, table: &Table, x: f64) -> f64 {
         let ([first, last], [a, b, c]) = self.sides(table, x);
         let middle = b.dot(self.t0);
@@ -107,7 +107,8 @@ fn signed_lambdas_are_correct_for_all_data_and_absolute_values_for_one_class_of_
         let table = data.table();
         let [lambda, mu] = [table.lambda[0], -table.lambda[1]];
         for x in table.roots([lambda, mu]) {
-            // Rounding is amplified up to a thousand times if tangents are nearly parallel or a root is large.
+            // Rounding is amplified up to a thousand times if tangents are nearly parallel or a
+            // root is large.
             assert!(data.residual(&table, x) < 4e-12, "{data:?}: {:e}", data.residual(&table, x));
         }
         for x in table.roots([lambda.abs(), mu.abs()]) {
@@ -116,7 +117,8 @@ fn signed_lambdas_are_correct_for_all_data_and_absolute_values_for_one_class_of_
                 roots_in_class += 1;
                 assert!(residual < 4e-12, "{data:?}: {residual:e}");
             } else {
-                // The error is comparable to the data. It is smallest if both values are nearly zero.
+                // The error is comparable to the data. It is smallest if both values are nearly
+                // zero.
                 roots_elsewhere += 1;
                 assert!(residual > 1e-6, "{data:?}: {residual:e}");
             }
@@ -149,7 +151,8 @@ fn random_data_have_the_known_solution_rates() {
             }
         }
     }
-    // The reference values are whole percentages. The standard deviation for 40,000 samples is a quarter of a percent.
+    // The reference values are whole percentages. The standard deviation for 40,000 samples is a
+    // quarter of a percent.
     for (rate, expected) in rates.into_iter().zip([0.57, 0.09, 0.25, 0.09]) {
         assert!((rate - expected).abs() < 0.0075, "{rates:?}");
     }
@@ -192,8 +195,8 @@ fn the_data_of_table_five_and_their_replacements_have_the_golden_numbers() {
 
 #[test]
 fn short_arcs_keep_more_digits_than_the_printed_form() {
-    // The curve (u, u²/2, u³/6) starts at the origin, so positions keep all digits. The first side is a third of the
-    // length, up to a relative error of the order of the squared length.
+    // The curve (u, u²/2, u³/6) starts at the origin, so positions keep all digits. The first side
+    // is a third of the length, up to a relative error of the order of the squared length.
     let curve = Bezier::new(vec![DVec3::ZERO, v(1.0, 0.0, 0.0) / 3.0, v(4.0, 1.0, 0.0) / 6.0, v(6.0, 3.0, 1.0) / 6.0]);
     for (length, bound, printed_error) in [(1e-6, 3e-7, 1e-5), (1e-7, 5e-5, 1e-3)] {
         let (start, end) = (curve.jet(0.0), curve.jet(length));

@@ -20,7 +20,8 @@ struct Errors {
     position: f64,
 }
 
-/// Nodes and weights of the Gauss–Legendre rule on [0, 1], by Newton's method on the Legendre polynomial.
+/// Nodes and weights of the Gauss–Legendre rule on [0, 1], by Newton's method on the Legendre
+/// polynomial.
 fn gauss_rule(count: usize) -> Vec<(f64, f64)> {
     let degree = count as f64;
     (0..count)
@@ -42,8 +43,9 @@ fn gauss_rule(count: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Errors (23), (25) of the spline with `segments` segments, by the Gauss–Legendre rule with `nodes` nodes per segment.
-/// Frames are compared with those at the nearest points of the cubic. The maxima over the nodes are slightly low.
+/// Errors (23), (25) of the spline with `segments` segments, by the Gauss–Legendre rule with
+/// `nodes` nodes per segment. Frames are compared with those at the nearest points of the cubic.
+/// The maxima over the nodes are slightly low.
 fn errors(segments: usize, tilt: Tilt, nodes: usize) -> Errors {
     let curve = cubic();
     let reference = -DVec3::Y;
@@ -69,8 +71,8 @@ fn errors(segments: usize, tilt: Tilt, nodes: usize) -> Errors {
     errors
 }
 
-/// Asserts that `found` agrees with all digits of `golden`, up to half a unit of the last digit and the rounding of a
-/// distance between unit vectors.
+/// Asserts that `found` agrees with all digits of `golden`, up to half a unit of the last digit and
+/// the rounding of a distance between unit vectors.
 fn assert_digits(found: f64, golden: &str) {
     let (mantissa, exponent) = golden.split_once('e').unwrap();
     let decimals = mantissa.split_once('.').unwrap().1.len() as i32;
@@ -81,8 +83,9 @@ fn assert_digits(found: f64, golden: &str) {
 
 #[test]
 fn example_two_has_the_golden_errors() {
-    // Segments, nodes of the average, average and end error, and the maxima over twelve nodes per segment. The integrand
-    // has kinks, so the number of nodes matters: with 64 segments, the average over twelve nodes is 0.7 percent high.
+    // Segments, nodes of the average, average and end error, and the maxima over twelve nodes per
+    // segment. The integrand has kinks, so the number of nodes matters: with 64 segments, the
+    // average over twelve nodes is 0.7 percent high.
     for (segments, nodes, average, end, largest, position) in [
         (2, 96, "3.199771076571e-2", "2.66898801971e-2", "5.54e-2", "3.55e-2"),
         (4, 96, "6.8625e-3", "2.00833640738e-3", "2.92e-2", "3.96e-3"),

@@ -1,4 +1,5 @@
-//! Pythagorean-hodograph cubics, compared with golden values, their definition, and the curves that they approximate.
+//! Pythagorean-hodograph cubics, compared with golden values, their definition, and the curves that
+//! they approximate.
 #![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use glam::DVec3;
@@ -85,7 +86,8 @@ fn closed_forms_match_the_curve() {
     assert!(end.r.distance(v(-0.7956932015674809, -0.6056998670788134, 0.0)) < 1e-14);
 }
 
-/// Example 2 of Wang et al. 2008: the printed data have no solution. The replacements have the known errors.
+/// Example 2 of Wang et al. 2008: the printed data have no solution. The replacements have the
+/// known errors.
 #[test]
 fn table_five_has_no_cubic_and_its_replacements_do() {
     let (x0, x1) = (v(1000.0, 0.0, 0.0), v(1000.0, 2000.0, 4000.0));
@@ -158,14 +160,15 @@ fn short_arcs_keep_their_digits() {
         Bezier::new(vec![DVec3::ZERO, v(1.0 / 3.0, 0.0, 0.0), v(2.0 / 3.0, 1.0 / 6.0, 0.0), v(1.0, 0.5, 1.0 / 6.0)]);
     let (a, b) = (curve.jet(0.0), curve.jet(h));
     let cubic = PhCubic::hermite(a.position, b.position, a.first, b.first).unwrap();
-    // The first side is a third of the length, up to a relative error h². The tangents differ by h, which has ten
-    // digits, and their product with the chord cancels again. The printed form would have an error of 4e-2.
+    // The first side is a third of the length, up to a relative error h². The tangents differ by h,
+    // which has ten digits, and their product with the chord cancels again. The printed form would
+    // have an error of 4e-2.
     assert!((cubic.sides()[0].length() / (h / 3.0) - 1.0).abs() < 5e-6, "{}", cubic.sides()[0].length() / (h / 3.0));
 }
 
 proptest! {
-    /// Every solution satisfies the two conditions (17) on the control polygon, so the speed is the length of the
-    /// derivative.
+    /// Every solution satisfies the two conditions (17) on the control polygon, so the speed is the
+    /// length of the derivative.
     #[test]
     fn solutions_are_pythagorean(
         end in prop::array::uniform3(-2.0..2.0f64),
@@ -177,8 +180,8 @@ proptest! {
             let scale = cubic.polygon_length();
             for i in 0..=8 {
                 let at = f64::from(i) / 8.0;
-                // Near the degenerate cases, the roots of the quadratic lose digits. The cubics satisfy the conditions to
-                // half of the digits.
+                // Near the degenerate cases, the roots of the quadratic lose digits. The cubics
+                // satisfy the conditions to half of the digits.
                 prop_assert!((cubic.speed(at) - cubic.jet(at).speed()).abs() < 1e-7 * scale);
             }
             prop_assert!(cubic.jet(0.0).tangent().distance(t0.normalize()) < 1e-6);
@@ -189,7 +192,8 @@ proptest! {
 
 #[test]
 fn rational_rotations_have_the_golden_optimum() {
-    // Bounds: half a unit of the last digit, and one unit for the squared error of B, which is truncated.
+    // Bounds: half a unit of the last digit, and one unit for the squared error of B, which is
+    // truncated.
     for (cubic, lambda, squared_error, angle_error, lambda_bound, squared_bound) in [
         (example_a(), -0.7923418062, 1.00076646e-8, 2.560029e-5, 5.1e-11, 5.1e-17),
         (example_b(), -0.2566571628, 1.683115960605e-5, 9.15362e-4, 5.1e-11, 1e-17),
@@ -254,7 +258,8 @@ fn splines_approximate_curves_within_the_tolerance() {
     for tolerance in [1e-2, 1e-5, 1e-8] {
         let spline = PhSpline::follow(&knot, tolerance).unwrap();
         assert!(spline.error() <= tolerance);
-        // An independent check: all points of the knot are within the tolerance, plus the error between the checks.
+        // An independent check: all points of the knot are within the tolerance, plus the error
+        // between the checks.
         let search = isochore_curve::ClosestPoint::new(&spline);
         let farthest = (0..3000)
             .map(|i| search.closest(knot.position(std::f64::consts::TAU * f64::from(i) / 3000.0)).distance)
@@ -266,14 +271,16 @@ fn splines_approximate_curves_within_the_tolerance() {
 
 #[test]
 fn flat_cubics_have_stable_frames() {
-    // Between a visible arc and a line, rounding destroys the Frenet frame but must not affect the exact frame.
+    // Between a visible arc and a line, rounding destroys the Frenet frame but must not affect the
+    // exact frame.
     for bend in [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-13, 1e-15, 0.0] {
         let (t0, t1) = (v(1.0, bend, 0.3 * bend), v(1.0, -bend, 0.2 * bend));
         let cubic = PhCubic::hermite(v(3.0, 1.0, 2.0), v(4.0, 1.0, 2.0 + 0.25 * bend), t0, t1).unwrap();
         let frames = cubic.exact_frames(&[0.0, 0.3, 1.0], DVec3::Y).unwrap();
         let exact = exact_frames(&cubic, &[0.0, 0.3, 1.0], DVec3::Y).unwrap();
         for (frame, exact) in frames.iter().zip(&exact) {
-            // The data are rounded at 2e-16 of coordinates up to 4. The bend amplifies this if the Frenet frame is used.
+            // The data are rounded at 2e-16 of coordinates up to 4. The bend amplifies this if the
+            // Frenet frame is used.
             assert!(frame.r.distance(exact.r) < 2e-9, "bend {bend:e}: {:e}", frame.r.distance(exact.r));
         }
     }

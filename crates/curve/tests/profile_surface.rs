@@ -1,5 +1,5 @@
-//! Profile surfaces: comparison of the exact rational patch with direct evaluation, golden values and the checks of
-//! the paper.
+//! Profile surfaces: comparison of the exact rational patch with direct evaluation, golden values
+//! and the checks of the paper.
 
 #![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
@@ -20,7 +20,8 @@ fn cross_section() -> RationalCrossSection {
     )
 }
 
-/// A straight cross-section that avoids the spine: on a line through the spine, the check is trivial.
+/// A straight cross-section that avoids the spine: on a line through the spine, the check is
+/// trivial.
 fn line() -> RationalCrossSection {
     RationalCrossSection::polynomial(&[DVec2::new(-0.1, 0.05), DVec2::new(0.1, 0.09)])
 }
@@ -88,8 +89,9 @@ fn a_straight_cross_section_sweeps_a_developable_surface() {
         let all = curvatures(patch);
         all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &k| (least.min(k), most.max(k)))
     };
-    // K of a ruled surface is minus the squared error of the angular velocity. For lines at this distance from the
-    // spine, its golden minimum is −5.5e-12. With the Frenet frame, the golden range of K is −0.47 to −0.044.
+    // K of a ruled surface is minus the squared error of the angular velocity. For lines at this
+    // distance from the spine, its golden minimum is −5.5e-12. With the Frenet frame, the golden
+    // range of K is −0.47 to −0.044.
     let (least, most) = range(&rational(&half, &line()));
     assert!((least + 5.5e-12).abs() < 2e-13 && most <= 1e-25, "{least:e} to {most:e}");
     let (least, most) = range(&frenet(&half, &line()));

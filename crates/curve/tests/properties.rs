@@ -1,5 +1,5 @@
-//! Properties specific to double reflection: symmetry, Möbius invariance, exactness on spheres, and accuracy on dense
-//! samples.
+//! Properties specific to double reflection: symmetry, Möbius invariance, exactness on spheres, and
+//! accuracy on dense samples.
 #![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use glam::DVec3;
@@ -93,8 +93,8 @@ fn spherical_samples(count: usize) -> Spine {
 #[test]
 fn eight_samples_of_a_spherical_curve_are_enough() {
     let spine = spherical_samples(8);
-    // On a sphere, the normal makes a constant angle with every rotation-minimizing vector. Start 45 degrees from the
-    // normal, because projection is exact for the normal itself.
+    // On a sphere, the normal makes a constant angle with every rotation-minimizing vector. Start
+    // 45 degrees from the normal, because projection is exact for the normal itself.
     let start = Frame::new(spine.point(0), spine.tangent(0)).turned(std::f64::consts::FRAC_PI_4);
     let error = |method| {
         let last = propagate(&spine, start.r, method)[7];
@@ -145,20 +145,22 @@ fn dense_samples_do_not_lose_accuracy() {
         // A thousand steps with random rounding: √1000 · 2e-16 = 7e-15, and a margin of two.
         assert!(last.r.distance(exact[1].r) < 1.5e-14, "h = {h:e}: {:e}", last.r.distance(exact[1].r));
         assert!(last.r.dot(last.t).abs() < 1.5e-14);
-        // The smallest rotation has no threshold either. It differs by its error of second order, 2e-11.
+        // The smallest rotation has no threshold either. It differs by its error of second order,
+        // 2e-11.
         let rotated = propagate(&spine, reference, FrameMethod::Rotation)[1000];
         let bound = if h == 1e-5 { 2.5e-11 } else { 3e-14 };
         assert!(rotated.r.distance(exact[1].r) < bound, "h = {h:e}: {:e}", rotated.r.distance(exact[1].r));
     }
-    // A threshold of 1e-8 on the turning of a step would skip all steps of 1e-9, which turn by 6.83e-6 in total.
+    // A threshold of 1e-8 on the turning of a step would skip all steps of 1e-9, which turn by
+    // 6.83e-6 in total.
     let whole_turn = knot.jet(0.3).tangent().angle_between(knot.jet(0.3 + 1e-6).tangent());
     assert!((whole_turn - 6.83e-6).abs() < 5e-9, "{whole_turn:e}");
 }
 
 #[test]
 fn s_curve_errors_shrink_with_its_height() {
-    // Largest angle error with 64 segments, for the heights of Zheng's section 3.4. The torsion at the midpoint is
-    // −2.4/height.
+    // Largest angle error with 64 segments, for the heights of Zheng's section 3.4. The torsion at
+    // the midpoint is −2.4/height.
     for (height, expected, bound) in [
         (1.0, 4.750e-7, 5e-11),
         (0.1, 1.360e-7, 5e-11),
@@ -262,8 +264,9 @@ proptest! {
         if let Ok(frames) = rotation_minimizing_frames(&spine, reference, method, DegenerateSegment::Rotate) {
             prop_assert_eq!(frames.stations.len(), spine.segments() + 1);
             for frame in frames.stations {
-                // A reflection amplifies rounding up to 1/√(c₂/4) = 10 times per step. A nearly parallel reference
-                // amplifies it up to 1e10 times, which the second orthogonalization removes.
+                // A reflection amplifies rounding up to 1/√(c₂/4) = 10 times per step. A nearly
+                // parallel reference amplifies it up to 1e10 times, which the second
+                // orthogonalization removes.
                 prop_assert!((frame.r.length() - 1.0).abs() < 1e-12);
                 prop_assert!(frame.r.dot(frame.t).abs() < 1e-10);
                 prop_assert!((frame.r.cross(frame.s) - frame.t).length() < 1e-10);
@@ -271,7 +274,8 @@ proptest! {
         }
     }
 
-    /// For Hermite data of any size and shape, the result is an error or a finite curve with finite frames.
+    /// For Hermite data of any size and shape, the result is an error or a finite curve with finite
+    /// frames.
     #[test]
     fn rational_segments_are_finite_or_rejected(
         coordinates in prop::collection::vec(-1.0..1.0f64, 12),

@@ -1,5 +1,6 @@
-//! Other methods on the torus knot of Wang et al. 2008: variants of Runge–Kutta, and projection onto the next normal
-//! plane. They show that the published errors determine the differential equation, the start and the error measure.
+//! Other methods on the torus knot of Wang et al. 2008: variants of Runge–Kutta, and projection
+//! onto the next normal plane. They show that the published errors determine the differential
+//! equation, the start and the error measure.
 
 use std::f64::consts::TAU;
 
@@ -30,7 +31,8 @@ fn binormal() -> DVec3 {
     knot().jet(0.0).tangent().cross(normal())
 }
 
-/// Integrated reference vectors, one per parameter, projected into the normal plane after each step if `projected`.
+/// Integrated reference vectors, one per parameter, projected into the normal plane after each step
+/// if `projected`.
 fn integrate(equation: Equation, projected: bool, parameters: &[f64], reference: DVec3) -> Vec<DVec3> {
     let rate = |parameter: f64, r: DVec3| {
         let jet = knot().jet(parameter);
@@ -67,7 +69,8 @@ fn largest_error(equation: Equation, projected: bool, reference: DVec3) -> f64 {
 
 #[test]
 fn the_table_uses_the_tangential_equation_without_projection() {
-    // The published error of 512 steps is 9.10e-6. The reference values have four digits; the exact frame adds 1e-13.
+    // The published error of 512 steps is 9.10e-6. The reference values have four digits; the exact
+    // frame adds 1e-13.
     for (equation, projected, expected) in [
         (Equation::Tangential, true, 2.593e-6),
         (Equation::AngularVelocity, false, 6.317e-6),
@@ -76,7 +79,8 @@ fn the_table_uses_the_tangential_equation_without_projection() {
         let error = largest_error(equation, projected, normal());
         assert!((error - expected).abs() < 5.1e-10, "{equation:?}, projected {projected}: {error:e}");
     }
-    // Starting from the binormal, the same equation has a different error. The reference value has three digits.
+    // Starting from the binormal, the same equation has a different error. The reference value has
+    // three digits.
     let error = largest_error(Equation::Tangential, false, binormal());
     assert!((error - 5.50e-6).abs() < 5e-9, "{error:e}");
 }
@@ -103,7 +107,8 @@ fn angle_errors(method: FrameMethod, segments: usize, reference: DVec3) -> Vec<f
 #[test]
 fn projection_is_published_at_the_end_point_and_from_the_normal() {
     let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
-    // Segments, error at the end and largest error, with four and five digits. Published: 9.03e-2 and 3.52e-4.
+    // Segments, error at the end and largest error, with four and five digits. Published: 9.03e-2
+    // and 3.52e-4.
     for (segments, end, max, unit) in [(128, 9.030e-2, 9.054e-2, 1e-5), (2048, 3.5235e-4, 3.5356e-4, 1e-8)] {
         let errors = angle_errors(FrameMethod::Projection, segments, normal());
         assert!((errors[segments] - end).abs() < 0.51 * unit, "{segments}: {:e}", errors[segments]);
@@ -114,7 +119,8 @@ fn projection_is_published_at_the_end_point_and_from_the_normal() {
         let errors = angle_errors(FrameMethod::Projection, 512, reference);
         assert!((errors[512] - end).abs() < 5.1e-7, "{:e}", errors[512]);
     }
-    // The error of double reflection is largest at the end, so its rows do not distinguish the two measures.
+    // The error of double reflection is largest at the end, so its rows do not distinguish the two
+    // measures.
     for segments in [128, 512, 2048] {
         let errors = angle_errors(FrameMethod::DoubleReflection, segments, normal());
         assert_eq!(errors[segments], largest(&errors));

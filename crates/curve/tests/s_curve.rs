@@ -1,5 +1,6 @@
-//! The S-shaped curve of Zheng's thesis, section 3.4. As its height tends to zero, the torsion at the midpoint tends to
-//! −π times a delta function. Quadrature of the torsion then fails, but frames remain accurate.
+//! The S-shaped curve of Zheng's thesis, section 3.4. As its height tends to zero, the torsion at
+//! the midpoint tends to −π times a delta function. Quadrature of the torsion then fails, but
+//! frames remain accurate.
 #![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use std::f64::consts::TAU;
@@ -10,7 +11,8 @@ use isochore_curve::{
     rotation_minimizing_frames,
 };
 
-/// ∫ τ ds up to full turns, without quadrature of the torsion: rotation of the Frenet frame relative to an exact frame.
+/// ∫ τ ds up to full turns, without quadrature of the torsion: rotation of the Frenet frame
+/// relative to an exact frame.
 fn total_torsion_by_frames(curve: &Bezier) -> f64 {
     let ends = [0.0, 1.0];
     let frames = exact_frames(curve, &ends, DVec3::Z).unwrap();
@@ -100,13 +102,15 @@ fn the_midpoint_has_the_published_series() {
         let middle = curve.jet(0.5);
         let (kappa, tau) = (0.8 * h, -2.4 / h);
         assert!((middle.curvature() / kappa - 1.0).abs() < 1e-14 && (middle.torsion() / tau - 1.0).abs() < 1e-13);
-        // The curve is symmetric under a half turn about the x axis, so both are even about the midpoint: κ₁ = τ₁ = 0.
+        // The curve is symmetric under a half turn about the x axis, so both are even about the
+        // midpoint: κ₁ = τ₁ = 0.
         for offset in [0.01, 0.1, 0.3] {
             let (before, after) = (curve.jet(0.5 - offset), curve.jet(0.5 + offset));
             assert!((before.curvature() / after.curvature() - 1.0).abs() < 1e-12);
             assert!((before.torsion() / after.torsion() - 1.0).abs() < 1e-11);
         }
-        // Second derivative of an even function with respect to arc length. The thesis prints the opposite sign.
+        // Second derivative of an even function with respect to arc length. The thesis prints the
+        // opposite sign.
         let squared_speed = middle.first.length_squared();
         let kappa_second = second_derivative(|u| curve.jet(u).curvature(), 0.5) / squared_speed;
         let expected = 192.0 * (3.0 + 3.0 * h * h - h.powi(4)) / (125.0 * h);
@@ -132,7 +136,8 @@ fn a_step_across_the_midpoint_has_the_published_error() {
             let length = 2.0 * half * curve.jet(0.5).speed();
             -exact.angle_to(stepped) * 720.0 / (constant * length.powi(5))
         };
-        // The ratio is one up to the squared step. Extrapolation removes this term and leaves the fourth power.
+        // The ratio is one up to the squared step. Extrapolation removes this term and leaves the
+        // fourth power.
         let extrapolated = (4.0 * ratio(0.01) - ratio(0.02)) / 3.0;
         assert!((extrapolated - 1.0).abs() < 3e-5, "height {h}: {extrapolated}");
     }

@@ -1,5 +1,5 @@
-//! The torus knot of Wang et al. 2008, equation (16): golden frames from 40-digit arithmetic, tables III and IV, and
-//! orders of convergence.
+//! The torus knot of Wang et al. 2008, equation (16): golden frames from 40-digit arithmetic,
+//! tables III and IV, and orders of convergence.
 #![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
 
 use std::f64::consts::{FRAC_PI_4, TAU};
@@ -27,7 +27,8 @@ fn sampled(segments: usize, method: FrameMethod) -> Vec<Frame> {
     frames(&Spine::sample(&knot(), segments).unwrap(), method)
 }
 
-/// Points of an open spine over the whole turn, as in the published tables. Its last point equals the first.
+/// Points of an open spine over the whole turn, as in the published tables. Its last point equals
+/// the first.
 fn open_points(segments: usize) -> Vec<DVec3> {
     uniform_parameters(&knot(), segments).iter().map(|&u| knot().position(u)).collect()
 }
@@ -62,8 +63,9 @@ fn end_error(last: Frame) -> f64 {
 
 #[test]
 fn errors_match_the_published_tables() {
-    // Segments, then the errors of double reflection, projection and rotation from an independent 40-digit computation.
-    // The published rows agree, except for the misprinted values of projection and rotation with 64 segments.
+    // Segments, then the errors of double reflection, projection and rotation from an independent
+    // 40-digit computation. The published rows agree, except for the misprinted values of
+    // projection and rotation with 64 segments.
     let rows = [
         (64, 5.09809432627084e-3, 3.63617785478575e-1, 7.78561373660012e-1),
         (128, 3.24009271602405e-4, 9.02970594725578e-2, 1.9108374202716e-1),
@@ -103,7 +105,8 @@ fn runge_kutta_errors_match_the_table() {
         let parameters = uniform_parameters(&knot(), segments);
         end_error(runge_kutta_frames(&knot(), &parameters, -DVec3::X).unwrap()[segments])
     };
-    // Published with three digits. The published values for 64 and 128 segments are 0.8 and 0.4 percent lower.
+    // Published with three digits. The published values for 64 and 128 segments are 0.8 and 0.4
+    // percent lower.
     for (segments, expected, bound) in [
         (64, 3.6078e-2, 5e-7),
         (128, 2.3299e-3, 5e-8),
@@ -116,7 +119,8 @@ fn runge_kutta_errors_match_the_table() {
     }
 }
 
-/// Error ratios for doubled samples: 1/16 for fourth order and 1/4 for second order, as h tends to zero.
+/// Error ratios for doubled samples: 1/16 for fourth order and 1/4 for second order, as h tends to
+/// zero.
 #[test]
 fn orders_are_four_four_two_two() {
     let ratio = |method| {
@@ -169,8 +173,8 @@ fn estimated_tangents_are_of_fourth_order() {
             .map(|(&u, tangent)| tangent.distance(knot().jet(u).tangent()))
             .fold(0.0, f64::max)
     };
-    // The reference values have three digits. The paper claims fifth order, which applies to the weighted sum but not to
-    // its direction.
+    // The reference values have three digits. The paper claims fifth order, which applies to the
+    // weighted sum but not to its direction.
     for (segments, expected, unit) in [(256, 1.12e-4, 1e-6), (1024, 3.27e-7, 1e-9), (2048, 2.00e-8, 1e-10)] {
         assert!((error(segments) - expected).abs() < 0.51 * unit, "{segments}: {:e}", error(segments));
     }
@@ -212,8 +216,8 @@ fn tangents_only_are_of_fourth_order() {
     }
 }
 
-/// The formulas for the two ends, which the papers omit, need three tangents for fourth order: each end segment occurs
-/// once, so its error has the order of the whole.
+/// The formulas for the two ends, which the papers omit, need three tangents for fourth order: each
+/// end segment occurs once, so its error has the order of the whole.
 #[test]
 fn two_tangents_at_the_ends_lose_an_order() {
     let ratio = |end_chord: fn([DVec3; 3]) -> DVec3| {
@@ -280,7 +284,8 @@ fn jittered_points_are_recognized_and_converge_with_fourth_order() {
         let exact = exact_frames(&knot(), &[0.0, TAU], -DVec3::X).unwrap()[1];
         last.r.distance(exact.r)
     };
-    // Uniform stencils do not converge on these points. The automatic rule detects this and uses arc lengths.
+    // Uniform stencils do not converge on these points. The automatic rule detects this and uses
+    // arc lengths.
     let points = jittered_parameters(2048).iter().map(|&u| knot().position(u)).collect();
     let uniform = Spine::from_points(points, false, TangentRule::Uniform).unwrap();
     let result =
@@ -320,8 +325,8 @@ fn second_reflection_is_well_away_from_zero_on_coarse_samples() {
 
 #[test]
 fn exact_frames_do_not_depend_on_the_start() {
-    // The exact frame of a part equals that of the whole up to a constant rotation. This checks intervals that do not
-    // start at zero.
+    // The exact frame of a part equals that of the whole up to a constant rotation. This checks
+    // intervals that do not start at zero.
     let whole = exact_frames(&knot(), &[0.0, FRAC_PI_4, 3.0], -DVec3::X).unwrap();
     let part = exact_frames(&knot(), &[FRAC_PI_4, 3.0], whole[1].r).unwrap();
     assert!(part[1].r.distance(whole[2].r) < 1e-13);
@@ -329,7 +334,8 @@ fn exact_frames_do_not_depend_on_the_start() {
 
 #[test]
 fn the_rate_relative_to_a_fixed_direction_converges_spectrally() {
-    // A direction far from all reversed tangents: the minimum of 1 + a · t is near its optimum, 0.2247.
+    // A direction far from all reversed tangents: the minimum of 1 + a · t is near its optimum,
+    // 0.2247.
     let fixed = DVec3::new(-0.025, 0.005, -1.0).normalize();
     let least =
         (0..5000).map(|i| 1.0 + fixed.dot(knot().jet(TAU * f64::from(i) / 5000.0).tangent())).fold(2.0, f64::min);
@@ -345,8 +351,8 @@ fn the_rate_relative_to_a_fixed_direction_converges_spectrally() {
         (-total).rem_euclid(TAU) - TAU
     };
     let exact = -2.87571199786589409;
-    // The trapezoid rule on a periodic function: doubling the samples doubles the digits, down to the rounding of a sum
-    // of 400 terms with the value 35.
+    // The trapezoid rule on a periodic function: doubling the samples doubles the digits, down to
+    // the rounding of a sum of 400 terms with the value 35.
     assert!((closing(100) - exact).abs() < 1e-4 && (closing(200) - exact).abs() < 1e-8);
     assert!((closing(400) - exact).abs() < 1e-13 && (closing(800) - exact).abs() < 1e-13);
 }

@@ -41,7 +41,8 @@ fn closing_angles_are_golden() {
     }
 }
 
-/// If the closing angle is near half a turn, the smallest rotation changes sign as samples get finer.
+/// If the closing angle is near half a turn, the smallest rotation changes sign as samples get
+/// finer.
 #[test]
 fn the_sign_of_the_smallest_twist_depends_on_the_samples() {
     let torus = TrigonometricCurve::torus_knot();

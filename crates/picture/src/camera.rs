@@ -6,8 +6,8 @@ use isochore_mesh::Aabb;
 /// Fraction of the panel's half width and half height that the subject may fill.
 const FILL: f64 = 0.92;
 
-/// Smallest subject radius relative to its largest coordinate. Smaller: differences of coordinates are
-/// rounding errors. Larger: small subjects far from the origin do not fill the panel.
+/// Smallest subject radius relative to its largest coordinate. Smaller: differences of coordinates
+/// are rounding errors. Larger: small subjects far from the origin do not fill the panel.
 const SMALLEST_SUBJECT: f64 = 1e-9;
 
 /// Direction and field of view of all panels. The distance to the subject follows from these.
@@ -36,8 +36,8 @@ impl Camera {
     }
 }
 
-/// A camera fitted to a subject. Converts world coordinates to view coordinates (x right, y up, z toward
-/// the eye) and to the picture plane.
+/// A camera fitted to a subject. Converts world coordinates to view coordinates (x right, y up, z
+/// toward the eye) and to the picture plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View {
     eye: DVec3,
@@ -64,7 +64,8 @@ pub(crate) struct Projected {
 }
 
 impl View {
-    /// Places `camera` so that `points` just fill a panel with the given `aspect` (width over height).
+    /// Places `camera` so that `points` just fill a panel with the given `aspect` (width over
+    /// height).
     pub(crate) fn fit(camera: &Camera, points: impl Iterator<Item = DVec3> + Clone, aspect: f64) -> Self {
         let bounds = Aabb::of(points.clone());
         let (center, extent) =
@@ -99,8 +100,8 @@ impl View {
 
     /// The nearest eye position whose panel contains all `points`.
     ///
-    /// In each direction of the picture plane, the two edges of the panel are planes through the eye.
-    /// Both are moved outward until all points are between them.
+    /// In each direction of the picture plane, the two edges of the panel are planes through the
+    /// eye. Both are moved outward until all points are between them.
     fn tightest_eye(&self, points: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
         let farthest = |axis: DVec3, slope: f64| {
             points.clone().fold(f64::NEG_INFINITY, |max, point| {

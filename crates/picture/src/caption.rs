@@ -25,8 +25,8 @@ impl Type {
         if caption.is_empty() { 0 } else { caption.lines().count() * self.height.val() + self.height.val() }
     }
 
-    /// Calls `ink(column, row, coverage)` for every pixel of the centered caption, with a coverage from 0
-    /// to 1. Lines that are too long are truncated.
+    /// Calls `ink(column, row, coverage)` for every pixel of the centered caption, with a coverage
+    /// from 0 to 1. Lines that are too long are truncated.
     pub(crate) fn set(self, caption: &str, width: usize, mut ink: impl FnMut(usize, usize, f64)) {
         let advance = get_raster_width(FontWeight::Regular, self.height);
         let letters_per_line = width / advance;

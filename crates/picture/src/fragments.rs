@@ -9,9 +9,9 @@ use euc::{
 use crate::camera::Projected;
 use crate::camera::View;
 
-/// Triangles with a smaller projected area (in units of half the panel size, squared) are not drawn.
-/// Larger: up to ten times this value, no visible triangle is lost. Smaller: reciprocals of areas
-/// overflow single precision.
+/// Triangles with a smaller projected area (in units of half the panel size, squared) are not
+/// drawn. Larger: up to ten times this value, no visible triangle is lost. Smaller: reciprocals of
+/// areas overflow single precision.
 const SMALLEST_IMAGE: f64 = 1e-10;
 
 /// Point of a triangle that is visible at a sample.

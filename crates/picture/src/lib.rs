@@ -1,7 +1,7 @@
 //! Shaded pictures of triangle meshes, rendered in software.
 //!
-//! Rendering needs neither a window nor a graphics card. The same input gives the same bytes on every
-//! machine and for any number of threads.
+//! Rendering needs neither a window nor a graphics card. The same input gives the same bytes on
+//! every machine and for any number of threads.
 //!
 //! # Terms
 //!

@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 /// Unit shading normals of the three corners of each triangle.
 ///
-/// The normal of a corner is the mean of the normals of the faces at its vertex, weighted by their corner
-/// angles. Only faces whose normal differs from that of the corner's own face by at most `crease_angle`
-/// (degrees) count. Faces with zero area have a zero normal.
+/// The normal of a corner is the mean of the normals of the faces at its vertex, weighted by their
+/// corner angles. Only faces whose normal differs from that of the corner's own face by at most
+/// `crease_angle` (degrees) count. Faces with zero area have a zero normal.
 pub(crate) fn corner_normals(mesh: &TriMesh, crease_angle: f64) -> Vec<[DVec3; 3]> {
     let faces: Vec<Face> = mesh.triangles.par_iter().map(|triangle| Face::of(mesh, triangle)).collect();
     let around = CornersAround::of(mesh);

@@ -39,8 +39,8 @@ impl<'a> Body<'a> {
         Self { paint, ..self }
     }
 
-    /// Creates a tube of `radius` (model units) around a polyline, in one linear RGB `color`. The body is
-    /// empty if there are fewer than two distinct points.
+    /// Creates a tube of `radius` (model units) around a polyline, in one linear RGB `color`. The
+    /// body is empty if there are fewer than two distinct points.
     ///
     /// # Examples
     /// ```
@@ -57,8 +57,8 @@ impl<'a> Body<'a> {
         Body { mesh: Cow::Owned(tube::polyline(points, radius)), paint: Paint::Uniform(color) }
     }
 
-    /// Creates arrows from the first point of each pair to the second, with shafts of `radius` (model
-    /// units), in one linear RGB `color`. Arrows of zero length are omitted.
+    /// Creates arrows from the first point of each pair to the second, with shafts of `radius`
+    /// (model units), in one linear RGB `color`. Arrows of zero length are omitted.
     pub fn arrows(arrows: &[(DVec3, DVec3)], radius: f64, color: DVec3) -> Body<'static> {
         Body { mesh: Cow::Owned(tube::arrows(arrows, radius)), paint: Paint::Uniform(color) }
     }
@@ -72,8 +72,8 @@ pub struct Panel<'a> {
 }
 
 impl<'a> Panel<'a> {
-    /// Creates a panel without bodies. Lines of the `caption` are separated by `\n`. An empty caption takes no
-    /// space.
+    /// Creates a panel without bodies. Lines of the `caption` are separated by `\n`. An empty
+    /// caption takes no space.
     pub fn new(caption: impl Into<String>) -> Self {
         Self { bodies: Vec::new(), caption: caption.into() }
     }

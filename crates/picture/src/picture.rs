@@ -81,8 +81,8 @@ impl Picture {
 
 /// Renders `panels` side by side with one camera.
 ///
-/// Triangles are skipped if a coordinate is not finite, if their area is zero, or if they are behind
-/// the eye.
+/// Triangles are skipped if a coordinate is not finite, if their area is zero, or if they are
+/// behind the eye.
 ///
 /// # Errors
 /// - [`PictureError::Size`] if the picture is empty or too large.
@@ -256,7 +256,8 @@ mod tests {
             (0..100).map(|y| picture.pixels()[y * 200 + from..y * 200 + to].iter().filter(|p| is_clay(p)).count()).sum()
         };
         let (small, large): (usize, usize) = (covered(0, 99), covered(101, 200));
-        // The area ratio is 100. The small square covers about 8 x 8 pixels, each edge uncertain by one pixel.
+        // The area ratio is 100. The small square covers about 8 x 8 pixels, each edge uncertain by
+        // one pixel.
         assert!(large > 60 * small && large < 160 * small, "{small} {large}");
     }
 

@@ -33,8 +33,8 @@ const HOLLOW_REACH: f64 = 0.14;
 const HOLLOW_PROBES: usize = 40;
 /// Strength of the shade in hollows.
 const HOLLOW_SHADE: f64 = 1.5;
-/// Sine of the smallest elevation above the tangent plane that counts. Smaller: facets become visible.
-/// Larger: shallow dents stay bright.
+/// Sine of the smallest elevation above the tangent plane that counts. Smaller: facets become
+/// visible. Larger: shallow dents stay bright.
 const SMALLEST_RISE: f64 = 0.12;
 
 /// All bodies of a panel as one list of triangles, with normals and colors at their corners.
@@ -123,8 +123,8 @@ impl<'a> Shading<'a> {
         Self { surface, view, projected, fragments, width, height, samples }
     }
 
-    /// Linear RGB of the pixels, row by row from the top. `background` gives the background color at a
-    /// relative height, from 0 at the top to 1 at the bottom.
+    /// Linear RGB of the pixels, row by row from the top. `background` gives the background color
+    /// at a relative height, from 0 at the top to 1 at the bottom.
     pub(crate) fn pixels(&self, background: &(dyn Fn(f64) -> DVec3 + Sync)) -> Vec<DVec3> {
         let rows: Vec<Vec<DVec3>> = (0..self.height)
             .into_par_iter()
@@ -159,7 +159,8 @@ impl<'a> Shading<'a> {
         self.fragments.row(row)[column]
     }
 
-    /// Barycentric weights of a fragment on the surface: those on the picture plane, divided by depth.
+    /// Barycentric weights of a fragment on the surface: those on the picture plane, divided by
+    /// depth.
     fn weights_in_space(&self, fragment: &Fragment) -> [f64; 3] {
         let triangle = self.surface.triangles[fragment.triangle as usize];
         let weights: [f64; 3] = std::array::from_fn(|i| {
@@ -201,11 +202,11 @@ impl<'a> Shading<'a> {
 
     /// Openness of the sky above a visible point, from 0 to 1.
     ///
-    /// Probes the surface at points on a spiral around the pixel and sums how far each rises above the
-    /// tangent plane.
+    /// Probes the surface at points on a spiral around the pixel and sums how far each rises above
+    /// the tangent plane.
     ///
-    /// Source: M. McGuire et al., The Alchemy screen-space ambient obscurance algorithm, 2011. Deviation:
-    /// a fixed spiral replaces the random directions, so no noise has to be filtered.
+    /// Source: M. McGuire et al., The Alchemy screen-space ambient obscurance algorithm, 2011.
+    /// Deviation: a fixed spiral replaces the random directions, so no noise has to be filtered.
     fn openness(&self, column: usize, row: usize, point: &SurfacePoint) -> f64 {
         let reach = HOLLOW_REACH * self.view.radius;
         let reach_in_samples = self.view.fraction_of_height(reach, -point.position.z) * self.fragments.height as f64;

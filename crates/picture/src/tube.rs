@@ -13,7 +13,8 @@ const HEAD_LENGTH: f64 = 6.5;
 /// Largest fraction of an arrow's length that its head may take.
 const HEAD_FRACTION: f64 = 0.5;
 
-/// Tube around a polyline. Each cross-section follows from the previous one by the smallest rotation.
+/// Tube around a polyline. Each cross-section follows from the previous one by the smallest
+/// rotation.
 pub(crate) fn polyline(points: &[DVec3], radius: f64) -> TriMesh {
     let mut mesh = TriMesh::default();
     let mut path: Vec<DVec3> = points.iter().copied().filter(|point| point.is_finite()).collect();

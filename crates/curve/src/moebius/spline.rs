@@ -17,8 +17,8 @@ pub struct MoebiusSpline {
 impl MoebiusSpline {
     /// Interpolates points and tangents of `curve` at `segments` equal steps of its parameter.
     ///
-    /// Position and frame are of third order between the joints and of fourth order at the joints. With
-    /// [`Tilt::WhenNeeded`], the position is of fourth order everywhere.
+    /// Position and frame are of third order between the joints and of fourth order at the joints.
+    /// With [`Tilt::WhenNeeded`], the position is of fourth order everywhere.
     ///
     /// # Errors
     /// [`HermiteError`] with the first segment that has no solution.
@@ -60,10 +60,12 @@ impl MoebiusSpline {
         &self.segments
     }
 
-    /// Points with rotation-minimizing frames, at `samples` equal parameter steps per segment, ends included.
+    /// Points with rotation-minimizing frames, at `samples` equal parameter steps per segment, ends
+    /// included.
     ///
     /// # Errors
-    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
+    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first
+    /// tangent.
     ///
     /// # Panics
     /// If `samples` is zero.

@@ -1,8 +1,9 @@
 //! G¹ Hermite interpolation by Pythagorean-hodograph cubics.
 //!
-//! Source: Mäurer and Jüttler 1999, table 1. Correction: the printed absolute values |λ₁| and |λ₂| are valid only
-//! for λ₁ > 0 > λ₂. With signed values, the quadratic equation is valid for all data. Differences of nearly
-//! equal tangents are computed first, so that short arcs keep their digits.
+//! Source: Mäurer and Jüttler 1999, table 1. Correction: the printed absolute values |λ₁| and |λ₂|
+//! are valid only for λ₁ > 0 > λ₂. With signed values, the quadratic equation is valid for all
+//! data. Differences of nearly equal tangents are computed first, so that short arcs keep their
+//! digits.
 
 use glam::DVec3;
 
@@ -48,26 +49,26 @@ pub struct HermiteError {
     pub reason: PhCubicError,
 }
 
-/// Largest difference of parallel tangents. Larger: flat arcs are treated as lines. Smaller: rounding of the
-/// tangents counts as a difference.
+/// Largest difference of parallel tangents. Larger: flat arcs are treated as lines. Smaller:
+/// rounding of the tangents counts as a difference.
 const PARALLEL: f64 = 1e-14;
 
-/// Largest sine of the angle between the chord and parallel tangents of a line. Larger: slight S-shapes become
-/// lines. Smaller: lines with rounded coordinates are rejected.
+/// Largest sine of the angle between the chord and parallel tangents of a line. Larger: slight
+/// S-shapes become lines. Smaller: lines with rounded coordinates are rejected.
 const ALONG: f64 = 1e-12;
 
 impl PhCubic {
-    /// Interpolates two end points and the directions of their tangents. If two solutions follow both tangents,
-    /// returns the one with the shorter control polygon.
+    /// Interpolates two end points and the directions of their tangents. If two solutions follow
+    /// both tangents, returns the one with the shorter control polygon.
     ///
-    /// Most data with strong turning have no solution. Sufficiently dense samples of a smooth curve without
-    /// inflections have one, with an error of fourth order.
+    /// Most data with strong turning have no solution. Sufficiently dense samples of a smooth curve
+    /// without inflections have one, with an error of fourth order.
     ///
     /// # Errors
-    /// - [`PhCubicError::NotFinite`], [`PhCubicError::RepeatedPoint`] or [`PhCubicError::ZeroTangent`] if the
-    ///   input is invalid.
-    /// - [`PhCubicError::NoRealRoot`], [`PhCubicError::WrongDirection`] or [`PhCubicError::ParallelTangents`] if
-    ///   the data have no solution.
+    /// - [`PhCubicError::NotFinite`], [`PhCubicError::RepeatedPoint`] or
+    ///   [`PhCubicError::ZeroTangent`] if the input is invalid.
+    /// - [`PhCubicError::NoRealRoot`], [`PhCubicError::WrongDirection`] or
+    ///   [`PhCubicError::ParallelTangents`] if the data have no solution.
     pub fn hermite(start: DVec3, end: DVec3, start_tangent: DVec3, end_tangent: DVec3) -> Result<Self, PhCubicError> {
         for vector in [start, end, start_tangent, end_tangent] {
             if !(vector.is_finite() && vector.abs().max_element() <= COORDINATE_LIMIT) {
@@ -93,11 +94,13 @@ impl PhCubic {
     }
 }
 
-/// Candidates for the lengths (L₁, L₃) of the outer sides of the control polygon, signed along the tangents.
+/// Candidates for the lengths (L₁, L₃) of the outer sides of the control polygon, signed along the
+/// tangents.
 fn outer_lengths(chord: DVec3, t0: DVec3, t1: DVec3) -> Result<[[f64; 2]; 2], PhCubicError> {
     let sum = t0 + t1;
-    // Sum and difference of unit vectors are orthogonal. Orthogonalizing again removes the rounding of their
-    // lengths, which on short arcs exceeds the component of the difference along the curve.
+    // Sum and difference of unit vectors are orthogonal. Orthogonalizing again removes the rounding
+    // of their lengths, which on short arcs exceeds the component of the difference along the
+    // curve.
     let difference = (t1 - t0) - sum * ((t1 - t0).dot(sum) / sum.length_squared().max(f64::MIN_POSITIVE));
     // 1 − c and 1 + c for c = t₀ · t₁, without cancellation.
     let minus = 0.5 * difference.length_squared();
@@ -112,8 +115,8 @@ fn outer_lengths(chord: DVec3, t0: DVec3, t1: DVec3) -> Result<[[f64; 2]; 2], Ph
         };
     }
     if sum.length() < PARALLEL {
-        // A planar turn by half a circle, for which the general equation degenerates. L₁ − L₃ is the component of
-        // the chord along t₀, and L₁L₃ is the square of the component across it.
+        // A planar turn by half a circle, for which the general equation degenerates. L₁ − L₃ is
+        // the component of the chord along t₀, and L₁L₃ is the square of the component across it.
         let along = chord.dot(t0);
         let root = libm::hypot(along, 2.0 * chord.reject_from_normalized(t0).length());
         let first = 0.5 * (along + root);

@@ -1,24 +1,27 @@
-//! Biquadratic rational approximation of the rotation from the Frenet frame to the rotation-minimizing frame.
+//! Biquadratic rational approximation of the rotation from the Frenet frame to the
+//! rotation-minimizing frame.
 //!
-//! Source: Mäurer and Jüttler 1999, section 3.4, equations (34) to (41). W ≈ tan(Ω/2). The values and derivatives
-//! of Ω are exact at both ends. One free parameter λ minimizes the squared error of the angular velocity.
+//! Source: Mäurer and Jüttler 1999, section 3.4, equations (34) to (41). W ≈ tan(Ω/2). The values
+//! and derivatives of Ω are exact at both ends. One free parameter λ minimizes the squared error of
+//! the angular velocity.
 
 use super::PhCubic;
 use crate::quadrature::gauss_points;
 
-/// Panels of the ten-point rule for the squared error I. Larger: for rotations below half a turn, I changes by
-/// less than its rounding error. Smaller: λ loses digits.
+/// Panels of the ten-point rule for the squared error I. Larger: for rotations below half a turn, I
+/// changes by less than its rounding error. Smaller: λ loses digits.
 const PANELS: usize = 8;
 
-/// Largest number of Newton steps for λ. The clipped iteration takes 5 to 11 steps on the examples of the paper.
+/// Largest number of Newton steps for λ. The clipped iteration takes 5 to 11 steps on the examples
+/// of the paper.
 const STEPS: usize = 60;
 
-/// Initial distance of λ from its bound, in units of λ + 2 at the bound. Larger: above one, the iteration starts
-/// outside the basin of the minimum. Smaller: more steps.
+/// Initial distance of λ from its bound, in units of λ + 2 at the bound. Larger: above one, the
+/// iteration starts outside the basin of the minimum. Smaller: more steps.
 const START: f64 = 0.1;
 
-/// A biquadratic rational function W = γ/β. Twice its arctangent approximates the rotation Ω of a [`PhCubic`] from
-/// its Frenet frame to a rotation-minimizing frame.
+/// A biquadratic rational function W = γ/β. Twice its arctangent approximates the rotation Ω of a
+/// [`PhCubic`] from its Frenet frame to a rotation-minimizing frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RationalRotation {
     /// Bernstein coefficients of the numerator γ.
@@ -38,14 +41,15 @@ impl RationalRotation {
     pub const FRENET: Self =
         Self { numerator: [0.0; 3], denominator: [1.0; 3], lambda: 0.0, initial_angle: 0.0, squared_error: 0.0 };
 
-    /// Computes the best approximation for `cubic` with Ω symmetric about zero. W then has no pole, because Ω
-    /// stays in (−π, π). To obtain a given initial angle, rotate the cross-section by a constant angle.
+    /// Computes the best approximation for `cubic` with Ω symmetric about zero. W then has no pole,
+    /// because Ω stays in (−π, π). To obtain a given initial angle, rotate the cross-section by a
+    /// constant angle.
     pub fn symmetric(cubic: &PhCubic) -> Self {
         Self::with_initial_angle(cubic, -0.5 * cubic.rotation_to(1.0)).unwrap_or(Self::FRENET)
     }
 
-    /// Computes the best approximation with Ω(0) = `initial_angle`. Returns `None` if Ω reaches ±π, because W then
-    /// has a pole.
+    /// Computes the best approximation with Ω(0) = `initial_angle`. Returns `None` if Ω reaches ±π,
+    /// because W then has a pole.
     pub fn with_initial_angle(cubic: &PhCubic, initial_angle: f64) -> Option<Self> {
         let whole = cubic.rotation_to(1.0);
         if !(initial_angle.abs() < std::f64::consts::PI && (initial_angle + whole).abs() < std::f64::consts::PI) {
@@ -95,8 +99,8 @@ struct SquaredError {
 }
 
 impl Family {
-    /// Numerator and denominator for λ, scaled to a positive denominator. If W decreases, all coefficients of the
-    /// denominator (37) are negative.
+    /// Numerator and denominator for λ, scaled to a positive denominator. If W decreases, all
+    /// coefficients of the denominator (37) are negative.
     fn member(&self, lambda: f64) -> ([f64; 3], [f64; 3]) {
         let (w0, w1, s0, s1) = (self.start, self.end, self.start_slope, self.end_slope);
         let last = (w1 - w0) * (lambda + 2.0) - s0;
@@ -125,8 +129,8 @@ impl Family {
             let (b, db) = (bernstein(denominator, v), slope(denominator, v));
             let (gl, dgl) = (bernstein(numerator_rate, v), slope(numerator_rate, v));
             let (bl, dbl) = (bernstein(denominator_rate, v), slope(denominator_rate, v));
-            // dΩ/dv = 2W′/(1 + W²) = 2P/Q with P = γ′β − γβ′ and Q = γ² + β². The suffixes l and ll denote the first
-            // and second derivatives with respect to λ.
+            // dΩ/dv = 2W′/(1 + W²) = 2P/Q with P = γ′β − γβ′ and Q = γ² + β². The suffixes l and ll
+            // denote the first and second derivatives with respect to λ.
             let (p, q) = (dg * b - g * db, g * g + b * b);
             let (pl, ql) = (dgl * b + dg * bl - gl * db - g * dbl, 2.0 * (g * gl + b * bl));
             let (pll, qll) = (2.0 * (dgl * bl - gl * dbl), 2.0 * (gl * gl + bl * bl));
@@ -140,7 +144,8 @@ impl Family {
         error
     }
 
-    /// Minimizes the squared error by Newton's method. Each step at most halves the distance to the bound.
+    /// Minimizes the squared error by Newton's method. Each step at most halves the distance to the
+    /// bound.
     fn best_lambda(&self, points: &[(f64, f64, f64)]) -> f64 {
         let bound = self.lower_bound();
         let mut above = START * (bound + 2.0);

@@ -5,20 +5,22 @@ use crate::curve::{jet_of_segments, joints};
 use crate::quadrature::gauss;
 use crate::{Curve, CurveJet, Frame, FrameError, Spine, orthogonal_reference};
 
-/// Largest number of halvings of a smooth piece of the curve. Larger: useful only for tolerances near rounding
-/// error. Smaller: tight tolerances fail.
+/// Largest number of halvings of a smooth piece of the curve. Larger: useful only for tolerances
+/// near rounding error. Smaller: tight tolerances fail.
 const DEPTH: u32 = 24;
 
-/// Points of a cubic that are compared with the curve. Larger: more time. Smaller: a local maximum of the error
-/// can be missed; there are at most three between the ends.
+/// Points of a cubic that are compared with the curve. Larger: more time. Smaller: a local maximum
+/// of the error can be missed; there are at most three between the ends.
 const CHECKS: usize = 9;
 
-/// Largest turning of the curve over one segment, radians. Larger: the points are too few for long arcs, and a
-/// shortcut between two branches of a knot is accepted. Smaller: more segments than a loose tolerance needs.
+/// Largest turning of the curve over one segment, radians. Larger: the points are too few for long
+/// arcs, and a shortcut between two branches of a knot is accepted. Smaller: more segments than a
+/// loose tolerance needs.
 const LARGEST_TURNING: f64 = 1.2;
 
-/// Newton steps that move a point of the curve into the normal plane of the cubic. Larger: no effect. Smaller:
-/// the distance is overestimated; the error of the initial guess is of third order.
+/// Newton steps that move a point of the curve into the normal plane of the cubic. Larger: no
+/// effect. Smaller: the distance is overestimated; the error of the initial guess is of third
+/// order.
 const NEWTON_STEPS: usize = 8;
 
 /// A curve of [`PhCubic`] segments with continuous tangent.
@@ -71,13 +73,14 @@ pub enum PhSplineError {
 }
 
 impl PhSpline {
-    /// Approximates `curve` within `tolerance` model units. Parameter intervals are halved until the cubic of each
-    /// is close enough. Intervals are split at points of zero curvature, because the cubics have no inflections.
+    /// Approximates `curve` within `tolerance` model units. Parameter intervals are halved until
+    /// the cubic of each is close enough. Intervals are split at points of zero curvature, because
+    /// the cubics have no inflections.
     ///
     /// # Errors
     /// - [`PhSplineError::Tolerance`] if `tolerance` is not positive and finite.
-    /// - [`PhSplineError::Segment`] or [`PhSplineError::Accuracy`] if the shortest segment fails, for example at a
-    ///   cusp.
+    /// - [`PhSplineError::Segment`] or [`PhSplineError::Accuracy`] if the shortest segment fails,
+    ///   for example at a cusp.
     pub fn follow(curve: &impl Curve, tolerance: f64) -> Result<Self, PhSplineError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(PhSplineError::Tolerance { tolerance });
@@ -86,7 +89,8 @@ impl PhSpline {
         let mut spline =
             Self { segments: Vec::new(), parameters: vec![breaks[0]], error: 0.0, closed: curve.is_closed() };
         for pair in breaks.windows(2) {
-            // Use at least two parts, because one segment of a closed curve would join a point to itself.
+            // Use at least two parts, because one segment of a closed curve would join a point to
+            // itself.
             let middle = 0.5 * (pair[0] + pair[1]);
             spline.extend(curve, pair[0], middle, tolerance, DEPTH)?;
             spline.extend(curve, middle, pair[1], tolerance, DEPTH)?;
@@ -111,8 +115,8 @@ impl PhSpline {
         Ok(Self { segments: cubics, parameters, error, closed: curve.is_closed() })
     }
 
-    /// Interpolates the points and tangents of `spine`. The parameters are the stations. The error is zero,
-    /// because the spine has no points in between for comparison.
+    /// Interpolates the points and tangents of `spine`. The parameters are the stations. The error
+    /// is zero, because the spine has no points in between for comparison.
     ///
     /// # Errors
     /// [`HermiteError`] with the first segment that has no cubic.
@@ -179,11 +183,12 @@ impl PhSpline {
         self.segments.iter().map(PhCubic::length).sum()
     }
 
-    /// Points with exact rotation-minimizing frames, at `samples` equal parameter steps per segment, ends
-    /// included.
+    /// Points with exact rotation-minimizing frames, at `samples` equal parameter steps per
+    /// segment, ends included.
     ///
     /// # Errors
-    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first tangent.
+    /// [`FrameError::Reference`] if `reference` is zero, not finite, or parallel to the first
+    /// tangent.
     ///
     /// # Panics
     /// If `samples` is zero.
@@ -203,8 +208,8 @@ impl PhSpline {
             all.extend(parameters.iter().zip(&frames).map(|(&v, &frame)| (segment.position(v), frame)));
             r = frames[samples].r;
         }
-        // At the joints, the tangents of neighboring segments differ by rounding. Make each frame orthonormal to its
-        // own tangent.
+        // At the joints, the tangents of neighboring segments differ by rounding. Make each frame
+        // orthonormal to its own tangent.
         for (_, frame) in &mut all {
             *frame = Frame::new(orthogonal_reference(frame.r, frame.t)?, frame.t);
         }
@@ -235,8 +240,8 @@ fn between(start: &CurveJet, end: &CurveJet) -> Result<PhCubic, PhCubicError> {
     PhCubic::hermite(start.position, end.position, start.first, end.first)
 }
 
-/// Largest distance between the cubic and the interval of the curve that it approximates, measured in the normal
-/// planes of the cubic.
+/// Largest distance between the cubic and the interval of the curve that it approximates, measured
+/// in the normal planes of the cubic.
 fn deviation(curve: &impl Curve, cubic: &PhCubic, start: f64, end: f64) -> f64 {
     let whole = cubic.length();
     (1..=CHECKS)
@@ -260,7 +265,8 @@ fn deviation(curve: &impl Curve, cubic: &PhCubic, start: f64, end: f64) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Parameter at which to split an interval: a point of nearly zero curvature inside it, or else the midpoint.
+/// Parameter at which to split an interval: a point of nearly zero curvature inside it, or else the
+/// midpoint.
 fn cut(curve: &impl Curve, start: f64, end: f64) -> f64 {
     let middle = 0.5 * (start + end);
     let at = |i: usize| start + (end - start) * i as f64 / 8.0;

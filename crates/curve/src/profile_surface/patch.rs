@@ -1,6 +1,7 @@
 //! The exact rational patch of a cross-section swept along a Pythagorean-hodograph cubic.
 //!
-//! Source: Mäurer and Jüttler 1999, equation (42). Correction of its third term: f₃ = ((1 − W²) b − 2W n)/(1 + W²).
+//! Source: Mäurer and Jüttler 1999, equation (42). Correction of its third term: f₃ = ((1 − W²) b −
+//! 2W n)/(1 + W²).
 
 use glam::{DVec2, DVec3, DVec4};
 
@@ -41,7 +42,8 @@ impl RationalCrossSection {
     }
 }
 
-/// A rational tensor-product Bézier patch over [0, 1]²: u along the cross-section, v along the spine.
+/// A rational tensor-product Bézier patch over [0, 1]²: u along the cross-section, v along the
+/// spine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RationalPatch {
     /// Homogeneous control points (w x, w y, w z, w). The index along v varies fastest.
@@ -70,8 +72,8 @@ pub struct SurfaceJet {
 }
 
 impl SurfaceJet {
-    /// Cosine of the angle between the parameter lines (equation 43). Zero on a profile surface, and zero if the
-    /// patch is singular.
+    /// Cosine of the angle between the parameter lines (equation 43). Zero on a profile surface,
+    /// and zero if the patch is singular.
     pub fn orthogonality(&self) -> f64 {
         let lengths = self.du.length() * self.dv.length();
         if lengths == 0.0 { 0.0 } else { self.du.dot(self.dv) / lengths }
@@ -93,12 +95,12 @@ impl RationalPatch {
     /// Degree along the spine of a sweep along a Pythagorean-hodograph cubic.
     pub const SPINE_DEGREE: usize = 9;
 
-    /// Sweeps `cross_section` along `cubic`. The frame is the Frenet frame rotated by `rotation`. The degree along
-    /// the spine is 9.
+    /// Sweeps `cross_section` along `cubic`. The frame is the Frenet frame rotated by `rotation`.
+    /// The degree along the spine is 9.
     ///
-    /// At v = 0, the axes of the cross-section are rotated by `initial_angle` from the Frenet normal and binormal.
-    /// [`RationalRotation::FRENET`] gives the sweep with the Frenet frame. On a straight cubic, the constant frame
-    /// [`PhCubic::frenet_frame`] replaces the Frenet frame.
+    /// At v = 0, the axes of the cross-section are rotated by `initial_angle` from the Frenet
+    /// normal and binormal. [`RationalRotation::FRENET`] gives the sweep with the Frenet frame. On
+    /// a straight cubic, the constant frame [`PhCubic::frenet_frame`] replaces the Frenet frame.
     pub fn sweep(
         cubic: &PhCubic,
         rotation: &RationalRotation,
@@ -114,15 +116,15 @@ impl RationalPatch {
             let frame = cubic.frenet_frame(0.0);
             (speed.map(|s| frame.r * s), speed.map(|s| frame.s * s))
         } else {
-            // Numerators of normal and binormal over the common denominator σ: σ x″ − σ′ x′ and x′ × x″, both divided
-            // by 6 L₂ sin θ and of degree two.
+            // Numerators of normal and binormal over the common denominator σ: σ x″ − σ′ x′ and x′
+            // × x″, both divided by 6 L₂ sin θ and of degree two.
             let height = (d0 / s0).cross(d1).length() * 2.0;
             let normal = [2.0 * (s0 * d1 - s1 * d0), s0 * d2 - s2 * d0, 2.0 * (s1 * d2 - s2 * d1)];
             let binormal = [2.0 * d0.cross(d1), d0.cross(d2), 2.0 * d1.cross(d2)];
             (normal.map(|c| c / height), binormal.map(|c| c / height))
         };
-        // With W = g/b: (1 − W²)/(1 + W²) = (b² − g²)/(b² + g²) and 2W/(1 + W²) = 2gb/(b² + g²). These are the cosine
-        // and sine of the rotation Ω.
+        // With W = g/b: (1 − W²)/(1 + W²) = (b² − g²)/(b² + g²) and 2W/(1 + W²) = 2gb/(b² + g²).
+        // These are the cosine and sine of the rotation Ω.
         let (g, b) = (rotation.numerator, rotation.denominator);
         let multiply = |a: f64, b: f64| a * b;
         let scale = |a: f64, v: DVec3| v * a;
