@@ -1,4 +1,4 @@
-//! The command in temporary folders: exit codes, words, files.
+//! Tests of the command in temporary folders: exit codes, messages and files.
 
 #[path = "command/bad_input.rs"]
 mod bad_input;
@@ -6,6 +6,8 @@ mod bad_input;
 mod curves;
 #[path = "command/folder.rs"]
 mod folder;
+#[path = "command/help.rs"]
+mod help;
 #[path = "command/interruption.rs"]
 mod interruption;
 #[path = "command/results.rs"]

@@ -1,34 +1,34 @@
-//! Every bad input gives exit code 2, one line that names it, and no file.
+//! Invalid input: exit code 2, one line that names the input, and no output.
 
 use std::{fs, io::Write};
 
 use crate::folder::{Folder, PRESS, Run, TETRAHEDRON};
 
-/// Runs `PRESS` with `from` replaced by `to`, beside `files` and an output of earlier times.
+/// Runs `PRESS` with `from` replaced by `to`, in a folder with `files` and an old output. Expects an error.
 #[track_caller]
-fn refuse(from: &str, to: &str, files: &[(&str, &str)], words: &[&str]) {
+fn expect_rejected(from: &str, to: &str, files: &[(&str, &str)], parts: &[&str]) {
     assert!(PRESS.contains(from), "{from}");
     let folder = Folder::with(files);
     fs::write(folder.path("press.toml"), PRESS.replace(from, to)).unwrap();
-    fs::write(folder.path("out.ply"), "of earlier times").unwrap();
+    fs::write(folder.path("out.ply"), "old output").unwrap();
     let before = folder.contents();
-    folder.run(&["run", "press.toml"]).expect_error(2, words);
+    folder.run(&["run", "press.toml"]).expect_error(2, parts);
     assert_eq!(folder.contents(), before);
 }
 
-/// Runs `PRESS` with the target `name`, which holds `text`.
+/// Runs `PRESS` with the target `name` that contains `text`. Expects an error.
 #[track_caller]
-fn refuse_target(name: &str, text: &str, words: &[&str]) {
+fn expect_target_rejected(name: &str, text: &str, parts: &[&str]) {
     let mesh = format!("mesh = \"{name}\"");
-    refuse("shape = { kind = \"icosphere\", radius = 1.0, subdivisions = 3 }", &mesh, &[(name, text)], words);
+    expect_rejected("shape = { kind = \"icosphere\", radius = 1.0, subdivisions = 3 }", &mesh, &[(name, text)], parts);
 }
 
 #[test]
-fn missing_files() {
+fn rejects_missing_files() {
     Folder::with(&[]).run(&["run", "none.toml"]).expect_error(2, &["none.toml", "No such file"]);
     Folder::with(&[]).run(&["inspect", "none.obj"]).expect_error(2, &["none.obj", "No such file"]);
     let mesh = "mesh = \"none.obj\"";
-    refuse(
+    expect_rejected(
         "shape = { kind = \"icosphere\", radius = 1.0, subdivisions = 3 }",
         mesh,
         &[],
@@ -37,18 +37,18 @@ fn missing_files() {
 }
 
 #[test]
-fn unusable_meshes() {
+fn rejects_invalid_meshes() {
     let target = "target.obj";
-    refuse_target(target, &TETRAHEDRON.replace("2 3 4", "2 3 9"), &[target, "line 8", "9", "out of range"]);
-    refuse_target(target, &TETRAHEDRON.replace("v 0 1 0", "v 0 nan 0"), &[target, "line 3", "nan"]);
-    refuse_target(target, "", &[target, "no triangles"]);
-    refuse_target(target, "v 0 0 0\nv 1 0 0\nv 0 1 0\n", &[target, "no triangles"]);
-    refuse_target("target.xyz", "", &["target.xyz", "known are .obj"]);
-    refuse_target("target.glb", "glTF", &["target.glb"]);
+    expect_target_rejected(target, &TETRAHEDRON.replace("2 3 4", "2 3 9"), &[target, "line 8", "9", "out of range"]);
+    expect_target_rejected(target, &TETRAHEDRON.replace("v 0 1 0", "v 0 nan 0"), &[target, "line 3", "nan"]);
+    expect_target_rejected(target, "", &[target, "no triangles"]);
+    expect_target_rejected(target, "v 0 0 0\nv 1 0 0\nv 0 1 0\n", &[target, "no triangles"]);
+    expect_target_rejected("target.xyz", "", &["target.xyz", "known are .obj"]);
+    expect_target_rejected("target.glb", "glTF", &["target.glb"]);
 }
 
 #[test]
-fn truncated_glb() {
+fn rejects_truncated_glb() {
     let folder = Folder::with(&[("press.toml", PRESS)]);
     folder.run(&["run", "press.toml", "--output", "whole.glb"]).expect(0);
     let whole = folder.read("whole.glb");
@@ -59,63 +59,82 @@ fn truncated_glb() {
 }
 
 #[test]
-fn wrong_recipes() {
-    refuse("support = 0.3", "support = -0.3", &[], &["press.toml: line 8: tools.ball.support", "-0.3", "above 0"]);
-    refuse("support = 0.3", "suport = 0.3", &[], &["line 8: tools.ball.suport: unknown key", "`support`"]);
-    refuse("\"quintic\"", "\"quintik\"", &[], &["line 9: tools.ball.profile", "`quintik`", "`quintic`"]);
-    refuse("{ at = [0, 0, 1.8] }, ", "", &[], &["line 14: stroke.0.keys", "at least 2"]);
-    refuse("30.0]", "180.0]", &[], &["stroke.0.keys.1.rotate", "add a pose between"]);
-    refuse("[0, 0, 1, 30.0]", "[0, 0, 0, 30.0]", &[], &["stroke.0.keys.1.rotate", "zero"]);
+fn rejects_invalid_recipes() {
+    expect_rejected(
+        "support = 0.3",
+        "support = -0.3",
+        &[],
+        &["press.toml: line 8: tools.ball.support", "-0.3", "above 0"],
+    );
+    expect_rejected("support = 0.3", "suport = 0.3", &[], &["line 8: tools.ball.suport: unknown key", "`support`"]);
+    expect_rejected("\"quintic\"", "\"quintik\"", &[], &["line 9: tools.ball.profile", "`quintik`", "`quintic`"]);
+    expect_rejected("{ at = [0, 0, 1.8] }, ", "", &[], &["line 14: stroke.0.keys", "at least 2"]);
+    expect_rejected("30.0]", "180.0]", &[], &["stroke.0.keys.1.rotate", "add a pose between"]);
+    expect_rejected("[0, 0, 1, 30.0]", "[0, 0, 0, 30.0]", &[], &["stroke.0.keys.1.rotate", "zero"]);
     let twist = "kind = \"twist\"\norigin = [0, 0, 0]\naxis = [0, 0, 0]\ndegrees_per_unit = 1\n";
-    refuse("[output]", &format!("[[stroke]]\n{twist}[output]"), &[], &["stroke.1.axis", "zero"]);
-    refuse("recipe = 1", "recipe = ", &[], &["press.toml: line 1: "]);
-    refuse("out.ply", "out.doc", &[], &["out.doc", "known are .obj"]);
-    refuse("mesh = \"out.ply\"", "", &[], &["press.toml", "output.mesh", "--output"]);
-    refuse("subdivisions = 3", "subdivisions = 14", &[], &["target.shape.subdivisions", "5368709120 triangles"]);
+    expect_rejected("[output]", &format!("[[stroke]]\n{twist}[output]"), &[], &["stroke.1.axis", "zero"]);
+    expect_rejected("recipe = 1", "recipe = ", &[], &["press.toml: line 1: "]);
+    expect_rejected("out.ply", "out.doc", &[], &["out.doc", "known are .obj"]);
+    expect_rejected("mesh = \"out.ply\"", "", &[], &["press.toml", "output.mesh", "--output"]);
+    expect_rejected(
+        "subdivisions = 3",
+        "subdivisions = 14",
+        &[],
+        &["target.shape.subdivisions", "5368709120 triangles"],
+    );
 }
 
 #[test]
-fn unusable_masks() {
+fn rejects_invalid_masks() {
     let mask = "[mask]\nvertices = \"mask.csv\"\n[output]";
-    let refuse_weights = |text: &str, words: &[&str]| refuse("[output]", mask, &[("mask.csv", text)], words);
-    refuse_weights("0\n1\n1.5\n", &["mask.csv: row 3: 1.5 is not a weight"]);
-    refuse_weights("weight\n0\nhalf\n", &["mask.csv: row 3, column 1: `half` is not a number"]);
-    refuse_weights("0\n1\n", &["press.toml: mask.vertices: there are 2 weights for 642 vertices"]);
+    let expect_weights_rejected =
+        |text: &str, parts: &[&str]| expect_rejected("[output]", mask, &[("mask.csv", text)], parts);
+    expect_weights_rejected("0\n1\n1.5\n", &["mask.csv: row 3: 1.5 is not a weight"]);
+    expect_weights_rejected("weight\n0\nhalf\n", &["mask.csv: row 3, column 1: `half` is not a number"]);
+    expect_weights_rejected("0\n1\n", &["press.toml: mask.vertices: there are 2 weights for 642 vertices"]);
     let target = "mesh = \"a.obj\"\n";
     let shape = "shape = { kind = \"icosphere\", radius = 1.0, subdivisions = 3 }";
     let masked = format!("{target}[mask]\nvertices = \"mask.csv\"");
-    let refuse_rows = |text: &str, words: &[&str]| {
-        refuse(shape, &masked, &[("a.obj", TETRAHEDRON), ("mask.csv", text)], words);
+    let expect_rows_rejected = |text: &str, parts: &[&str]| {
+        expect_rejected(shape, &masked, &[("a.obj", TETRAHEDRON), ("mask.csv", text)], parts);
     };
-    refuse_rows("0\n1\n0\n", &["mask.csv: row 3: this weight is the last: 3 weights for the 4 vertices of the target"]);
-    refuse_rows("0\n1\n0\n1\n0\n", &["mask.csv: row 5: this weight comes after the last vertex"]);
+    expect_rows_rejected(
+        "0\n1\n0\n",
+        &["mask.csv: row 3: this weight is the last: 3 weights for the 4 vertices of the target"],
+    );
+    expect_rows_rejected("0\n1\n0\n1\n0\n", &["mask.csv: row 5: this weight has no vertex"]);
 }
 
 #[test]
-fn unusable_tool_meshes() {
+fn rejects_invalid_tool_meshes() {
     let tool = |resolution: u32| format!("{{ kind = \"mesh\", mesh = \"tool.obj\", resolution = {resolution} }}");
     let sphere = "{ kind = \"sphere\", radius = 0.4 }";
     let files = &[("tool.obj", TETRAHEDRON)];
-    refuse(sphere, &tool(1), files, &["line 7: tools.ball.shape.resolution", "is 1", "at least"]);
-    refuse(sphere, &tool(1024), files, &["tools.ball.shape", "bytes", "lower the resolution"]);
+    expect_rejected(sphere, &tool(1), files, &["line 7: tools.ball.shape.resolution", "is 1", "at least"]);
+    expect_rejected(sphere, &tool(1024), files, &["tools.ball.shape", "bytes", "lower the resolution"]);
     let inside_out = TETRAHEDRON.replace("f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4", "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3");
-    refuse(sphere, &tool(16), &[("tool.obj", &inside_out)], &["tools.ball.shape", "inside out"]);
-    refuse("tool = \"ball\"", "tool = \"bell\"", &[], &["line 13: stroke.0.tool", "`bell`", "`ball`"]);
+    expect_rejected(sphere, &tool(16), &[("tool.obj", &inside_out)], &["tools.ball.shape", "inside out"]);
+    expect_rejected("tool = \"ball\"", "tool = \"bell\"", &[], &["line 13: stroke.0.tool", "`bell`", "`ball`"]);
 }
 
 #[test]
-fn open_target_with_a_promise_on_its_volume() {
+fn rejects_a_volume_promise_for_an_open_target() {
     let open = TETRAHEDRON.replace("f 2 3 4\n", "");
     let mesh = "mesh = \"open.obj\"\n[promise]\nvolume = 0.1";
     let shape = "shape = { kind = \"icosphere\", radius = 1.0, subdivisions = 3 }";
-    refuse(shape, mesh, &[("open.obj", &open)], &["promise.volume", "no volume", "edge", "remove this promise"]);
+    expect_rejected(
+        shape,
+        mesh,
+        &[("open.obj", &open)],
+        &["promise.volume", "no volume", "edge", "remove this promise"],
+    );
 
     let sheet = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n";
-    refuse(shape, mesh, &[("open.obj", sheet)], &["promise.volume", "no volume", "it is zero"]);
+    expect_rejected(shape, mesh, &[("open.obj", sheet)], &["promise.volume", "no volume", "it is zero"]);
 }
 
 #[test]
-fn wrong_settings() {
+fn rejects_invalid_settings() {
     let folder = Folder::with(&[("press.toml", PRESS)]);
     let set = |setting: &str| folder.run(&["run", "press.toml", "--set", setting]);
     set("tools.ball.suport=1").expect_error(2, &["--set tools.ball.suport=1", "`support`"]);
@@ -124,7 +143,7 @@ fn wrong_settings() {
 }
 
 #[test]
-fn wrong_command_lines() {
+fn rejects_invalid_command_lines() {
     let folder = Folder::with(&[]);
     folder.run(&[]).expect_error(2, &["isochore --help"]);
     folder.run(&["run"]).expect_error(2, &["RECIPE"]);
@@ -134,7 +153,7 @@ fn wrong_command_lines() {
 }
 
 #[test]
-fn unusable_distance_grids() {
+fn rejects_invalid_distance_grids() {
     let folder = Folder::with(&[("a.obj", TETRAHEDRON)]);
     let before = folder.contents();
     let distance = |arguments: &[&str]| folder.run(&[&["distance", "a.obj"], arguments].concat());
@@ -148,7 +167,7 @@ fn unusable_distance_grids() {
 }
 
 #[test]
-fn unusable_places_for_outputs() {
+fn rejects_unusable_output_paths() {
     let folder = Folder::with(&[("press.toml", PRESS)]);
     fs::create_dir(folder.path("taken.ply")).unwrap();
     let before = folder.contents();
@@ -161,7 +180,7 @@ fn unusable_places_for_outputs() {
 }
 
 #[test]
-fn errors_for_machines() {
+fn prints_errors_as_json() {
     let folder = Folder::with(&[("press.toml", &PRESS.replace("support = 0.3", "support = 0"))]);
     let run = folder.run(&["run", "press.toml", "--json"]).expect(2);
     assert_eq!(run.stdout, "");
@@ -179,11 +198,11 @@ fn errors_for_machines() {
     );
 }
 
-/// A limit on the size of files makes writing fail midway, as a full disk does.
+/// A limit on the size of files makes writing fail partway, as a full disk does.
 #[test]
 #[cfg(unix)]
-fn a_limit_on_file_size() {
-    let folder = Folder::with(&[("press.toml", PRESS), ("out.ply", "of earlier times")]);
+fn restores_outputs_at_a_file_size_limit() {
+    let folder = Folder::with(&[("press.toml", PRESS), ("out.ply", "old output")]);
     let before = folder.contents();
     let script = "trap '' XFSZ; ulimit -f 8; exec \"$0\" run press.toml";
     let shell = std::process::Command::new("sh")
@@ -196,18 +215,18 @@ fn a_limit_on_file_size() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn disk_full() {
+fn restores_outputs_on_a_full_disk() {
     use std::process::Command;
     let folder = Folder::with(&[("press.toml", PRESS)]);
     let disk = folder.path("disk");
     fs::create_dir(&disk).unwrap();
     let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=64k", "tmpfs"]).arg(&disk).output();
     if !mount.is_ok_and(|output| output.status.success()) {
-        // The limit on file size above fails in the same places.
-        let _ = writeln!(std::io::stderr(), "skipped: mounting a small disk is not permitted here");
+        // The test with a limit on file size covers the same code.
+        let _ = writeln!(std::io::stderr(), "skipped: mounting a small disk is not permitted");
         return;
     }
-    fs::write(disk.join("out.obj"), "of earlier times").unwrap();
+    fs::write(disk.join("out.obj"), "old output").unwrap();
     let before = folder.contents();
     let run = folder.run(&["run", "press.toml", "--output", "disk/out.obj"]);
     let after = folder.contents();

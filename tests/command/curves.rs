@@ -1,4 +1,4 @@
-//! `frames` and `sweep`.
+//! Tests of `frames` and `sweep`.
 
 use std::f64::consts::TAU;
 
@@ -7,7 +7,7 @@ use isochore_mesh::{ClosedMesh, io};
 
 use crate::folder::Folder;
 
-/// Rows of the torus knot, with tangents on request.
+/// Rows of the torus knot, optionally with tangents.
 fn knot(rows: usize, with_tangents: bool) -> String {
     let spine = Spine::sample(&TrigonometricCurve::torus_knot(), rows).unwrap();
     let mut text = String::from(if with_tangents { "x,y,z,tx,ty,tz\n" } else { "" });
@@ -21,7 +21,7 @@ fn knot(rows: usize, with_tangents: bool) -> String {
     text
 }
 
-/// A helix of one turn as points alone.
+/// A helix of one turn, without tangents.
 fn helix(rows: usize) -> String {
     let helix = TrigonometricCurve::helix(1.0, 0.2, (0.0, TAU));
     let row = |u| helix.position(u);
@@ -41,14 +41,14 @@ fn table(bytes: &[u8]) -> (String, Vec<Vec<f64>>) {
 }
 
 #[test]
-fn frames_of_the_torus_knot_are_golden() {
+fn frames_of_the_torus_knot_match_golden_values() {
     let folder = Folder::with(&[("knot.csv", &knot(64, true))]);
     let arguments = ["frames", "knot.csv", "--closed", "--output", "frames.csv", "--r0=-1,0,0", "--json"];
     let run = folder.run(&arguments).expect(0);
     let (header, rows) = table(&folder.read("frames.csv"));
     assert_eq!(header, "x,y,z,rx,ry,rz,sx,sy,sz,tx,ty,tz");
-    assert_eq!((rows.len(), rows[0].len()), (64, 12), "a row a sample");
-    // The golden frame of 40-digit arithmetic, through two files of 17 digits.
+    assert_eq!((rows.len(), rows[0].len()), (64, 12), "one row per sample");
+    // Golden frame from 40-digit arithmetic; the values pass through two files with 17 digits.
     for (cell, golden) in rows[32][3..6].iter().zip([-0.13002211171695367, 0.9533616616881365, 0.2723890461966104]) {
         assert!((cell - golden).abs() < 1e-13);
     }
@@ -59,7 +59,7 @@ fn frames_of_the_torus_knot_are_golden() {
 }
 
 #[test]
-fn every_method_comes_near_the_exact_frame() {
+fn every_method_approximates_the_exact_frame() {
     let folder = Folder::with(&[("helix.csv", &helix(65))]);
     let curve = TrigonometricCurve::helix(1.0, 0.2, (0.0, TAU));
     let exact = exact_frames(&curve, &[0.0, TAU], glam::DVec3::Z).unwrap()[1];
@@ -85,7 +85,7 @@ fn every_method_comes_near_the_exact_frame() {
 }
 
 #[test]
-fn twisted_frames_close_and_turn() {
+fn twist_closes_and_turns_frames() {
     let folder = Folder::with(&[("knot.csv", &knot(128, false)), ("helix.csv", &helix(33))]);
     for law in ["arc", "curvature"] {
         for (twist, half) in [("minimal", -1.0), ("1", 1.0), ("-2", -1.0)] {
@@ -93,7 +93,7 @@ fn twisted_frames_close_and_turn() {
             let arguments = ["frames", "knot.csv", "--closed", "--law", law, &twist, "--r0=-1,0,0", "-o", "closed.csv"];
             folder.run(&arguments).expect(0);
             let (_, rows) = table(&folder.read("closed.csv"));
-            // By symmetry of the knot; estimated tangents keep the symmetry.
+            // Follows from the symmetry of the knot, which the estimated tangents preserve.
             assert!((rows[64][3] - half).abs() < 1e-12, "{law} {twist}: {}", rows[64][3]);
         }
     }
@@ -103,13 +103,13 @@ fn twisted_frames_close_and_turn() {
     };
     let (plain, turned) = (frames("none"), frames("1"));
     for k in 3..9 {
-        assert!((plain[32][k] - turned[32][k]).abs() < 1e-13, "a full turn ends where it began");
+        assert!((plain[32][k] - turned[32][k]).abs() < 1e-13, "a full turn ends at its start");
     }
     assert!((plain[16][3] - turned[16][3]).abs() > 0.1);
 }
 
 #[test]
-fn swept_meshes_are_closed_where_they_should_be() {
+fn swept_meshes_are_closed_on_request() {
     let folder =
         Folder::with(&[("knot.csv", &knot(200, false)), ("helix.csv", &helix(100)), ("square.csv", &square(0.1))]);
     let sweep = |extra: &[&str]| {
@@ -119,11 +119,11 @@ fn swept_meshes_are_closed_where_they_should_be() {
     };
     let knot = sweep(&["knot.csv", "--closed", "--profile-closed"]);
     assert_eq!(knot.positions.len(), 800);
-    // Cross-section times length; both are polygons inside the curve, and the square's center is on it.
+    // Area of the cross-section times length. The polygon is slightly shorter than the curve.
     let volume = ClosedMesh::new(&knot).unwrap().volume();
     assert!((volume / (0.01 * 15.37) - 1.0).abs() < 0.01, "{volume}");
     let capped = sweep(&["helix.csv", "--profile-closed", "--caps"]);
-    assert!(ClosedMesh::new(&capped).unwrap().volume() > 0.0, "outside out");
+    assert!(ClosedMesh::new(&capped).unwrap().volume() > 0.0, "the normals point outward");
     assert!(ClosedMesh::new(&sweep(&["helix.csv", "--profile-closed"])).is_err(), "no caps");
     assert!(ClosedMesh::new(&sweep(&["knot.csv", "--closed", "--twist", "none", "--profile-closed"])).is_err());
 }
@@ -145,7 +145,7 @@ fn nets_are_exact_patches_of_degree_nine() {
     for patch in 0..7 {
         for u in [0, 3] {
             for (a, b) in corner(patch, u, 9).iter().zip(corner(patch + 1, u, 0)) {
-                assert!((a - b).abs() < 1e-12, "patches join at the corners");
+                assert!((a - b).abs() < 1e-12, "corners of neighboring patches coincide");
             }
         }
     }
@@ -156,34 +156,34 @@ fn nets_are_exact_patches_of_degree_nine() {
 }
 
 #[test]
-fn exact_surfaces_go_to_cad_programs() {
+fn writes_exact_surfaces_as_step() {
     let folder = Folder::with(&[("helix.csv", &helix(5)), ("square.csv", &square(0.2))]);
     let arguments = ["sweep", "helix.csv", "--profile-closed", "--profile", "square.csv", "--output", "a.step"];
     folder.run(&arguments).expect(0);
     let text = String::from_utf8(folder.read("a.step")).unwrap();
     assert!(text.starts_with("ISO-10303-21;\n") && text.trim_end().ends_with("END-ISO-10303-21;"));
-    // Four segments of four sides: faces, edges across the five joints and along the four corners, corners.
+    // Four segments with four sides: faces; edges across five joints and along four corners; vertices.
     for (entity, count) in [("RATIONAL_B_SPLINE_SURFACE", 16), ("EDGE_CURVE", 5 * 4 + 4 * 4), ("VERTEX_POINT", 5 * 4)] {
         assert_eq!(text.matches(&format!("{entity}(")).count(), count, "{entity}");
     }
-    assert_eq!(text.matches("B_SPLINE_SURFACE(1, 9,").count(), 16, "the degrees of profile and curve");
+    assert_eq!(text.matches("B_SPLINE_SURFACE(1, 9,").count(), 16, "degrees of cross-section and curve");
     folder.run(&arguments).expect(0);
-    assert_eq!(folder.read("a.step"), text.as_bytes(), "the same file again");
+    assert_eq!(folder.read("a.step"), text.as_bytes(), "the file is reproducible");
 }
 
 #[test]
-fn bad_curves_are_named_by_row() {
+fn errors_name_the_rows_of_invalid_curves() {
     let rows = |text: &str| text.replace(' ', "\n");
-    for (curve, arguments, words) in [
+    for (curve, arguments, parts) in [
         ("0,0,0", &[][..], &["curve.csv", "at least 2 points, not 1"][..]),
         ("0,0,0 1,0,0 1,0,0 2,0,1", &[], &["rows 2 and 3", "coincide"]),
         ("0,0,0 1,nan,0 2,0,0", &[], &["row 2, column 2", "NaN"]),
-        ("0,0 1,0", &[], &["row 1 has 2 columns, not 3 or 6"]),
+        ("0,0 1,0", &[], &["row 1 has 2 columns; expected 3 or 6"]),
         ("0,0,0,1,0,0 1,0,0,-1,0,0 2,0,0,1,0,0", &[], &["rows 1 and 2", "reversed"]),
         ("0,0,0,1,0,0 1,0,0,0,0,0", &[], &["row 2", "the tangent is zero"]),
         ("0,0,0 1,0,0 0,0,0", &["--tangents", "circle"], &["row 2", "cusp"]),
-        ("0,0,0 1,0,0 2,0,0 3,0,0 4,0,0 5,0,0 6,0,0", &["--closed"], &["--closed", "6 apart", "open"]),
-        ("0,0,0 1,0,0 1,1,0 0,0,0", &["--closed"], &["row 4", "leave it out"]),
+        ("0,0,0 1,0,0 2,0,0 3,0,0 4,0,0 5,0,0 6,0,0", &["--closed"], &["--closed", "first row is 6", "open"]),
+        ("0,0,0 1,0,0 1,1,0 0,0,0", &["--closed"], &["row 4", "repeats the first point", "remove it"]),
         ("0,0,0 1,0,0", &["--tangents", "given"], &["no tangents", "tx,ty,tz"]),
         ("0,0,0 1,0,0", &["--r0", "1,0,0"], &["--r0", "parallel to the first tangent"]),
         ("0,0,0 1,0,0", &["--r0", "1,0"], &["--r0", "0,0,1"]),
@@ -192,33 +192,37 @@ fn bad_curves_are_named_by_row() {
         ("0,0,0 1,0,0", &["--samples-per-segment", "2"], &["--samples-per-segment", "ph or mobius"]),
         ("0,0,0,1,0,0 1,1,0,1,0,0", &["--method", "ph"], &["rows 1 and 2", "inflection", "more rows"]),
     ] {
-        let folder = Folder::with(&[("curve.csv", &rows(curve)), ("out.csv", "of earlier times")]);
+        let folder = Folder::with(&[("curve.csv", &rows(curve)), ("out.csv", "old output")]);
         let before = folder.contents();
         let arguments = [&["frames", "curve.csv", "-o", "out.csv"], arguments].concat();
-        folder.run(&arguments).expect_error(2, words);
+        folder.run(&arguments).expect_error(2, parts);
         assert_eq!(folder.contents(), before);
     }
 }
 
 #[test]
-fn bad_sweeps_are_refused() {
+fn rejects_invalid_sweeps() {
     let files = [
         ("curve.csv", "0,0,0\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n"),
         ("profile.csv", "0,0\n1,0\n0,1\n"),
         ("one.csv", "0,0\n"),
     ];
-    for (arguments, words) in [
+    for (arguments, parts) in [
         (&["--profile", "one.csv", "-o", "a.obj"][..], &["one.csv", "at least 2 rows"][..]),
-        (&["--profile", "curve.csv", "-o", "a.obj"], &["curve.csv", "row 1 has 3 columns, not 2"]),
+        (&["--profile", "curve.csv", "-o", "a.obj"], &["curve.csv", "row 1 has 3 columns; expected 2"]),
         (&["--profile", "profile.csv", "-o", "a.iges"], &["a.iges", "known are"]),
         (&["--profile", "profile.csv", "-o", "a.obj", "--caps"], &["--caps", "--profile-closed"]),
+        (
+            &["--profile", "profile.csv", "-o", "a.obj", "--bezier", "--profile-closed"],
+            &["--profile-closed", "--bezier"],
+        ),
         (&["--profile", "profile.csv", "-o", "a.json", "--method", "rotation"], &["--method ph"]),
         (&["--profile", "profile.csv", "-o", "a.json", "--twist", "1"], &["--twist", "write a mesh"]),
         (&["--profile", "none.csv", "-o", "a.obj"], &["none.csv", "No such file"]),
     ] {
         let folder = Folder::with(&files);
         let before = folder.contents();
-        folder.run(&[&["sweep", "curve.csv"], arguments].concat()).expect_error(2, words);
+        folder.run(&[&["sweep", "curve.csv"], arguments].concat()).expect_error(2, parts);
         assert_eq!(folder.contents(), before);
     }
 }

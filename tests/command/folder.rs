@@ -9,7 +9,7 @@ use std::{
 
 use tempfile::TempDir;
 
-/// A recipe that presses a ball into a sphere, quick to carry out. Its output goes to `out.ply`.
+/// A small recipe that presses a ball into a sphere and writes `out.ply`.
 pub(crate) const PRESS: &str = r#"recipe = 1
 
 [target]
@@ -29,14 +29,14 @@ keys = [ { at = [0, 0, 1.8] }, { at = [0, 0, 1.1], rotate = [0, 0, 1, 30.0] } ]
 mesh = "out.ply"
 "#;
 
-/// A tetrahedron, and what is to be done to its lines to spoil it.
+/// A tetrahedron as an OBJ file.
 pub(crate) const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 #[derive(Debug)]
 pub(crate) struct Folder(TempDir);
 
 impl Folder {
-    /// A folder with these files.
+    /// Creates a folder with the given files.
     pub(crate) fn with(files: &[(&str, &str)]) -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
         files.iter().for_each(|(name, text)| fs::write(folder.path(name), text).unwrap());
@@ -65,7 +65,7 @@ impl Folder {
         serde_json::from_slice(&self.read(name)).unwrap()
     }
 
-    /// All files in the folder, hidden and nested ones too, by name, and what they hold; folders end in a slash.
+    /// Contents of all files by name, including hidden and nested ones. Names of folders end in a slash.
     pub(crate) fn contents(&self) -> BTreeMap<String, Vec<u8>> {
         let mut contents = BTreeMap::new();
         collect(self.0.path(), "", &mut contents);
@@ -86,7 +86,7 @@ fn collect(folder: &Path, prefix: &str, contents: &mut BTreeMap<String, Vec<u8>>
     }
 }
 
-/// How a run of the command ended and what it said.
+/// Exit code and output of a run of the command.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) code: Option<i32>,
@@ -106,15 +106,15 @@ impl Run {
         self
     }
 
-    /// The one line of an error that says all of `words`, with exit code `code`.
+    /// Asserts the exit code and a single line of error that contains all of `parts`.
     #[track_caller]
-    pub(crate) fn expect_error(self, code: i32, words: &[&str]) {
+    pub(crate) fn expect_error(self, code: i32, parts: &[&str]) {
         let run = self.expect(code);
         assert_eq!(run.stdout, "");
         assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
         assert!(run.stderr.starts_with("error: ") && run.stderr.ends_with('\n'), "{}", run.stderr);
-        for word in words {
-            assert!(run.stderr.contains(word), "no `{word}` in {}", run.stderr);
+        for part in parts {
+            assert!(run.stderr.contains(part), "`{part}` is missing in {}", run.stderr);
         }
     }
 }

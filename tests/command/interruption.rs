@@ -1,4 +1,4 @@
-//! Ctrl-C.
+//! Tests of interrupts.
 
 use std::{
     process::{Command, Stdio},
@@ -8,22 +8,22 @@ use std::{
 
 use crate::folder::{Folder, PRESS, Run};
 
-/// The promise is one second; the rest is for a machine that is busy with other tests.
+/// The command stops within one second. The rest allows for a machine that is busy with other tests.
 const PROMPT: Duration = Duration::from_millis(2500);
 
 #[test]
 #[cfg(unix)]
-fn stops_within_a_second_and_leaves_nothing() {
-    // So many steps, so fine a mesh, that it would take minutes.
+fn stops_within_a_second_without_outputs() {
+    // The small steps and the fine mesh would take minutes.
     let recipe =
         PRESS.replace("subdivisions = 3", "subdivisions = 7").replace("[output]", "[integrate]\nstep = 1e-5\n[output]");
-    let folder = Folder::with(&[("press.toml", &recipe), ("out.ply", "of earlier times")]);
+    let folder = Folder::with(&[("press.toml", &recipe), ("out.ply", "old output")]);
     let before = folder.contents();
     for signal in ["-INT", "-TERM"] {
         let mut command = folder.command(&["run", "press.toml"]);
         let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         thread::sleep(Duration::from_millis(1500));
-        assert_ne!(folder.contents(), before, "its work has begun");
+        assert_ne!(folder.contents(), before, "the work has begun");
         let start = Instant::now();
         assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
         let run = Run::of(child.wait_with_output().unwrap());

@@ -1,4 +1,4 @@
-//! What comes out when the input is good.
+//! Results of valid input.
 
 use std::fs;
 use std::process::Command;
@@ -8,11 +8,11 @@ use serde_json::Value;
 use crate::folder::{Folder, PRESS, Run, TETRAHEDRON};
 
 fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
 #[test]
-fn run_writes_everything_it_is_asked_for() {
+fn writes_all_requested_outputs() {
     let outputs = "preview = \"out.png\"\nframes = { count = 3, directory = \"frames\" }\nreport = \"report.json\"\n";
     let folder = Folder::with(&[("press.toml", &format!("{PRESS}{outputs}"))]);
     let run = folder.run(&["run", "press.toml"]).expect(0);
@@ -39,7 +39,7 @@ fn run_writes_everything_it_is_asked_for() {
             assert!(!report[side][key].is_null(), "{side}.{key}");
         }
     }
-    // The lock leaves rounding alone: some hundred units in the last place for a sum over thousands of triangles.
+    // The lock leaves rounding errors: a few hundred ulps of a sum over thousands of triangles.
     assert!(number(&report["volume_change"]).abs() <= 1e-12, "{}", report["volume_change"]);
     assert!(number(&report["volume_change_before_lock"]).abs() > 1e-9);
     assert!(number(&report["lock_max_shift"]) > 0.0);
@@ -58,7 +58,7 @@ fn run_writes_everything_it_is_asked_for() {
 }
 
 #[test]
-fn a_missed_promise_gives_exit_code_1_with_the_output_written() {
+fn a_broken_promise_exits_with_1_and_writes_the_output() {
     let recipe = format!("{PRESS}[promise]\nvolume = 1e-9\n[volume]\nlock = false\n[refine]\nenabled = false\n");
     let folder = Folder::with(&[("press.toml", &recipe)]);
     let run = folder.run(&["run", "press.toml", "--report", "report.json", "--quiet"]).expect(1);
@@ -81,7 +81,7 @@ fn a_missed_promise_gives_exit_code_1_with_the_output_written() {
 }
 
 #[test]
-fn same_bytes_for_any_number_of_threads() {
+fn output_does_not_depend_on_the_number_of_threads() {
     let recipe = PRESS.replace("subdivisions = 3", "subdivisions = 4");
     let folder = Folder::with(&[("press.toml", &recipe), ("king.obj", TETRAHEDRON)]);
     let king =
@@ -99,7 +99,7 @@ fn same_bytes_for_any_number_of_threads() {
 }
 
 #[test]
-fn same_bytes_for_any_width_of_vectors() {
+fn output_does_not_depend_on_the_vector_width() {
     let folder = Folder::with(&[("press.toml", PRESS), ("king.obj", TETRAHEDRON)]);
     let king =
         "tools.ball.shape={ kind = \"mesh\", mesh = \"king.obj\", resolution = 24, transform = { scale = 0.8 } }";
@@ -107,18 +107,18 @@ fn same_bytes_for_any_width_of_vectors() {
         let arguments = ["run", "press.toml", "--output", "out.ply", "--set", shape];
         folder.run(&arguments).expect(0);
         let wide = folder.read("out.ply");
-        // The processor that valgrind acts has no registers of 512 bits.
+        // Valgrind emulates a processor without 512-bit registers.
         let command = folder.command(&arguments);
         let mut valgrind = Command::new("valgrind");
         valgrind.current_dir(folder.path("")).args(["--tool=none", "--quiet"]);
         valgrind.arg(command.get_program()).args(command.get_args());
-        Run::of(valgrind.output().expect("valgrind, which is in a package of that name")).expect(0);
+        Run::of(valgrind.output().expect("the package valgrind is installed")).expect(0);
         assert!(folder.read("out.ply") == wide, "{shape}");
     }
 }
 
 #[test]
-fn open_tool_meshes_are_taken_with_a_warning() {
+fn warns_about_open_tool_meshes() {
     let open = TETRAHEDRON.replace("f 2 3 4\n", "");
     let folder = Folder::with(&[("press.toml", PRESS), ("open.obj", &open)]);
     let shape = "tools.ball.shape={ kind = \"mesh\", mesh = \"open.obj\", resolution = 24 }";
@@ -134,7 +134,7 @@ fn open_tool_meshes_are_taken_with_a_warning() {
 }
 
 #[test]
-fn open_targets_have_no_volume() {
+fn reports_no_volume_for_open_targets() {
     let open = TETRAHEDRON.replace("f 2 3 4\n", "");
     let folder = Folder::with(&[("press.toml", PRESS), ("open.obj", &open)]);
     let target = "target={ mesh = \"open.obj\" }";
@@ -148,11 +148,11 @@ fn open_targets_have_no_volume() {
 }
 
 #[test]
-fn coarse_tool_grids_are_refined_and_said_so() {
+fn warns_when_it_refines_a_coarse_tool_grid() {
     let folder = Folder::with(&[("press.toml", PRESS), ("king.obj", TETRAHEDRON)]);
     let shape = "tools.ball.shape={ kind = \"mesh\", mesh = \"king.obj\", resolution = 8 }";
     let run = folder.run(&["run", "press.toml", "--set", shape]).expect(0);
-    // Six cells in a support of 0.3 on a side of 1.
+    // Six cells across a support of 0.3, for a mesh of side 1.
     assert!(run.stderr.contains("raised from 8 to 20"), "{}", run.stderr);
 }
 
@@ -164,7 +164,7 @@ fn json_prints_the_report() {
 }
 
 #[test]
-fn json_recipes_do_the_same() {
+fn json_recipes_give_the_same_result() {
     let folder = Folder::with(&[("press.toml", PRESS)]);
     folder.run(&["run", "press.toml"]).expect(0);
     let toml = folder.read("out.ply");
@@ -185,7 +185,7 @@ fn json_recipes_do_the_same() {
 }
 
 #[test]
-fn spines_come_from_files_too() {
+fn reads_spines_from_files() {
     let strip = "kind = \"strip\"\nmode = \"along\"\nradius = 0.2\nsupport = 0.3\ndistance = 0.1\n";
     let recipe = |spine: &str| PRESS.replace("[output]", &format!("[[stroke]]\n{strip}spine = {spine}\n\n[output]"));
     let folder = Folder::with(&[
@@ -204,7 +204,7 @@ fn spines_come_from_files_too() {
 }
 
 #[test]
-fn what_is_out_of_reach_keeps_its_bits() {
+fn vertices_outside_the_support_keep_their_bits() {
     let folder = Folder::with(&[
         ("press.toml", PRESS),
         ("far.obj", &TETRAHEDRON.replace("v 0", "v 50.1").replace("v 1", "v 51")),
@@ -222,7 +222,7 @@ fn what_is_out_of_reach_keeps_its_bits() {
 }
 
 #[test]
-fn inspect_lists_the_facts() {
+fn inspect_prints_all_statistics() {
     let folder = Folder::with(&[("a.obj", TETRAHEDRON), ("open.obj", &TETRAHEDRON.replace("f 2 3 4\n", ""))]);
     let facts: Value = serde_json::from_str(&folder.run(&["inspect", "a.obj", "--json"]).expect(0).stdout).unwrap();
     let names = [
@@ -244,7 +244,7 @@ fn inspect_lists_the_facts() {
     expected.sort_unstable();
     assert_eq!(found, expected);
     assert_eq!(facts["vertices"], 4);
-    // Exact up to the rounding of a sum of four terms.
+    // Exact except for the rounding of a sum of four terms.
     assert!((number(&facts["volume"]) - 1.0 / 6.0).abs() < 1e-15);
     assert!((number(&facts["area"]) - (1.5 + 0.75_f64.sqrt())).abs() < 1e-14);
     let open: Value = serde_json::from_str(&folder.run(&["inspect", "open.obj", "--json"]).expect(0).stdout).unwrap();
@@ -255,21 +255,25 @@ fn inspect_lists_the_facts() {
 }
 
 #[test]
-fn distance_writes_an_array_and_its_description() {
+fn distance_writes_an_array_and_its_metadata() {
     let folder = Folder::with(&[("a.obj", TETRAHEDRON)]);
     folder.run(&["distance", "a.obj", "--resolution", "10", "--output", "a.npy"]).expect(0);
-    let description = folder.json("a.json");
-    assert_eq!(description["dims"], serde_json::json!([15, 15, 15]), "10 cells, 2 on each side, and a sample more");
-    assert_eq!(number(&description["cell"]), 0.1);
+    let metadata = folder.json("a.json");
+    assert_eq!(
+        metadata["dims"],
+        serde_json::json!([15, 15, 15]),
+        "10 cells, 2 cells of padding on each side, and one more sample than cells"
+    );
+    assert_eq!(number(&metadata["cell"]), 0.1);
     let bytes = folder.read("a.npy");
     assert!(bytes.starts_with(b"\x93NUMPY"));
     let header = String::from_utf8_lossy(&bytes[10..118]).into_owned();
     assert!(header.contains("'<f4'") && header.contains("(15, 15, 15") && header.contains("False"), "{header}");
     let samples: Vec<f32> =
         bytes[bytes.len() - 4 * 15 * 15 * 15..].chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
-    let origin = number(&description["origin"][2]);
-    let bound = number(&description["error_bound"]);
-    // Below the face z = 0 the distance is the height; [z, y, x] = [0, 4, 4] is below the middle of that face.
+    let origin = number(&metadata["origin"][2]);
+    let bound = number(&metadata["error_bound"]);
+    // Below the face z = 0 the distance is the height. The sample [z, y, x] = [0, 4, 4] is below the center of that face.
     let sample = f64::from(samples[4 * 15 + 4]);
     assert!((sample + origin).abs() <= bound, "{sample} at height {origin}, to {bound}");
     assert!(samples[(5 * 15 + 3) * 15 + 3] < 0.0, "inside");
@@ -284,15 +288,7 @@ fn schema_is_json() {
 }
 
 #[test]
-fn help_and_version_go_to_stdout() {
-    for arguments in [&["--help"][..], &["run", "--help"], &["--version"]] {
-        let run = Folder::with(&[]).run(arguments).expect(0);
-        assert!(!run.stdout.is_empty() && run.stderr.is_empty());
-    }
-}
-
-#[test]
-fn demo_fills_a_folder_with_something_that_runs_again() {
+fn demo_writes_a_recipe_that_runs_again() {
     let folder = Folder::with(&[]);
     let run = folder.run(&["demo"]).expect(0);
     assert!(run.stdout.is_empty() && run.stderr.lines().count() <= 8, "{run:?}");
@@ -303,7 +299,7 @@ fn demo_fills_a_folder_with_something_that_runs_again() {
     assert!(before.keys().any(|name| name.ends_with(".png")));
     folder.run(&["run", "isochore-demo/press.toml"]).expect(0);
     let mut after = folder.contents();
-    // Only the times in the report differ.
+    // Only the timings in the report differ.
     after.insert("isochore-demo/report.json".to_owned(), before["isochore-demo/report.json"].clone());
     assert_eq!(after, before);
 }

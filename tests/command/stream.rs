@@ -1,4 +1,4 @@
-//! Points that are streamed: the bits of a replay in memory, everything else of the file passed through.
+//! Tests of `run --stream`: the same bits as a replay in memory; all other contents of the file are copied.
 
 use std::fs;
 
@@ -8,7 +8,8 @@ use isochore_sculpt::{Meshes, Recipe, recipe::Format, replay_points};
 
 use crate::folder::{Folder, PRESS};
 
-/// `PRESS` on the file `name`, which goes to `out` with the same extension; with a region, whose steps depend on the bounds.
+/// `PRESS` with the target `name`, written to `out` with the same extension. A region stroke is added, because its
+/// number of steps depends on the bounds of the points.
 fn recipe(name: &str) -> String {
     let extension = name.rsplit('.').next().unwrap();
     let region = "[[stroke]]\nkind = \"region\"\nmotion = { rotate = { origin = [0, 0, 0], axis = [1, 0, 0], degrees = 20.0 } }\n\
@@ -23,12 +24,12 @@ fn recipe(name: &str) -> String {
 }
 
 fn points() -> Vec<DVec3> {
-    // Single precision holds them, so that files of both precisions begin with the same points.
+    // Rounded to single precision, so that files of both precisions contain the same points.
     primitives::icosphere(1.0, 4).positions.iter().map(|point| point.as_vec3().as_dvec3()).collect()
 }
 
-/// Where the recipe carries the points in memory.
-fn carried(name: &str) -> Vec<DVec3> {
+/// Points advected in memory by the recipe.
+fn advected(name: &str) -> Vec<DVec3> {
     let recipe = Recipe::parse(&recipe(name), Format::Toml, &[]).unwrap();
     let placed: Vec<DVec3> = points().iter().map(|point| *point * 1.1).collect();
     replay_points(&recipe, &Meshes::new(), &placed, &NoProgress).unwrap().points
@@ -43,8 +44,8 @@ fn numpy_header(shape: &str, descr: &str) -> Vec<u8> {
     header
 }
 
-/// A PLY file in little or big endian whose vertices have a property before, between and after the coordinates, with an element
-/// before them and faces, strange ones too, after them.
+/// A binary PLY file. An element precedes the vertices, whose coordinates have properties before, between and after
+/// them; a face with an invalid index count follows.
 fn binary_ply(is_big: bool, points: &[DVec3]) -> Vec<u8> {
     let order = if is_big { "big" } else { "little" };
     let mut file = format!(
@@ -69,7 +70,7 @@ fn binary_ply(is_big: bool, points: &[DVec3]) -> Vec<u8> {
 }
 
 #[test]
-fn arrays_get_the_bits_of_a_replay_in_memory() {
+fn arrays_match_a_replay_in_memory_bitwise() {
     let mut file = numpy_header(&format!("({}, 3)", points().len()), "<f8");
     let header = file.clone();
     points().iter().for_each(|point| point.to_array().iter().for_each(|x| file.extend(x.to_le_bytes())));
@@ -78,13 +79,13 @@ fn arrays_get_the_bits_of_a_replay_in_memory() {
     for threads in ["1", "2"] {
         folder.run(&["run", "press.toml", "--stream", "--report", "report.json", "--threads", threads]).expect(0);
         let mut expected = header.clone();
-        let carried = carried("in.npy");
-        carried.iter().for_each(|point| point.to_array().iter().for_each(|x| expected.extend(x.to_le_bytes())));
+        let advected = advected("in.npy");
+        advected.iter().for_each(|point| point.to_array().iter().for_each(|x| expected.extend(x.to_le_bytes())));
         assert!(folder.read("out.npy") == expected);
         let report = folder.json("report.json");
-        assert_eq!(report["points"], carried.len());
+        assert_eq!(report["points"], advected.len());
         assert_eq!(report["strokes"], serde_json::json!(["move", "region"]));
-        let highest = carried.iter().map(|point| point.z).fold(f64::NEG_INFINITY, f64::max);
+        let highest = advected.iter().map(|point| point.z).fold(f64::NEG_INFINITY, f64::max);
         assert_eq!(report["bounds_after"]["max"][2], highest);
         assert!(report["bounds_before"]["max"][2].as_f64().unwrap() == 1.1);
         assert!(report["warnings"][0].as_str().unwrap().contains("lock"));
@@ -92,17 +93,17 @@ fn arrays_get_the_bits_of_a_replay_in_memory() {
 }
 
 #[test]
-fn binary_ply_keeps_all_but_the_coordinates() {
+fn binary_ply_keeps_everything_except_coordinates() {
     for is_big in [false, true] {
         let folder = Folder::with(&[("press.toml", &recipe("in.ply"))]);
         fs::write(folder.path("in.ply"), binary_ply(is_big, &points())).unwrap();
         folder.run(&["run", "press.toml", "--stream"]).expect(0);
-        assert!(folder.read("out.ply") == binary_ply(is_big, &carried("in.ply")), "big endian: {is_big}");
+        assert!(folder.read("out.ply") == binary_ply(is_big, &advected("in.ply")), "big endian: {is_big}");
     }
 }
 
 #[test]
-fn text_ply_keeps_its_words() {
+fn text_ply_keeps_everything_except_coordinates() {
     let file = |points: &[DVec3], gap: &str| {
         let mut text = format!(
             "ply\nformat ascii 1.0\ncomment kept\nelement vertex {}\nproperty uchar flag\nproperty double x\nproperty double y\n\
@@ -114,11 +115,11 @@ fn text_ply_keeps_its_words() {
     };
     let folder = Folder::with(&[("press.toml", &recipe("in.ply")), ("in.ply", &file(&points(), "\t"))]);
     folder.run(&["run", "press.toml", "--stream"]).expect(0);
-    assert_eq!(String::from_utf8(folder.read("out.ply")).unwrap(), file(&carried("in.ply"), "\t"));
+    assert_eq!(String::from_utf8(folder.read("out.ply")).unwrap(), file(&advected("in.ply"), "\t"));
 }
 
 #[test]
-fn chunks_of_any_size_are_the_same() {
+fn result_does_not_depend_on_the_chunk_size() {
     let folder = Folder::with(&[]);
     let path = folder.path("in.ply");
     fs::write(&path, binary_ply(true, &points())).unwrap();
@@ -140,75 +141,80 @@ fn chunks_of_any_size_are_the_same() {
     }
 }
 
-/// Runs the recipe on a file of these bytes, beside an output of earlier times.
+/// Runs the recipe on a file of these bytes, in a folder with an old output. Expects an error.
 #[track_caller]
-fn refuse(name: &str, bytes: &[u8], arguments: &[&str], words: &[&str]) {
+fn expect_rejected(name: &str, bytes: &[u8], arguments: &[&str], parts: &[&str]) {
     let folder = Folder::with(&[("press.toml", &recipe(name))]);
     fs::write(folder.path(name), bytes).unwrap();
-    fs::write(folder.path("out.ply"), "of earlier times").unwrap();
+    fs::write(folder.path("out.ply"), "old output").unwrap();
     let before = folder.contents();
-    folder.run(&[&["run", "press.toml", "--stream"], arguments].concat()).expect_error(2, words);
+    folder.run(&[&["run", "press.toml", "--stream"], arguments].concat()).expect_error(2, parts);
     assert_eq!(folder.contents(), before);
 }
 
 #[test]
-fn broken_files_are_refused_by_place() {
+fn errors_name_the_position_in_invalid_files() {
     let whole = binary_ply(false, &points());
     let header = whole.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
-    let place = format!("in.ply: the file is truncated: 2562 points announced, but it ends at byte {}", header + 200);
-    refuse("in.ply", &whole[..header + 200], &[], &[&place]);
+    let message = format!("in.ply: the file is truncated: 2562 points announced, but it ends at byte {}", header + 200);
+    expect_rejected("in.ply", &whole[..header + 200], &[], &[&message]);
     let mut infinite = whole.clone();
-    // Four bytes of the element before, records of 23 bytes, and a byte before x.
+    // The preceding element has four bytes, a vertex has 23 bytes, and x is at offset 1 of a vertex.
     infinite[header + 4 + 23 * 2 + 1..][..4].copy_from_slice(&f32::INFINITY.to_le_bytes());
-    refuse("in.ply", &infinite, &[], &["in.ply: point 2 ", &format!("at byte {}", header + 50), "not a finite number"]);
+    expect_rejected(
+        "in.ply",
+        &infinite,
+        &[],
+        &["in.ply: point 2 ", &format!("at byte {}", header + 50), "not a finite number"],
+    );
 
     let text =
         "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-    refuse("in.ply", format!("{text}0 0 0\n0 0 none\n").as_bytes(), &[], &["point 1 on line 9: error at 1:5"]);
-    refuse(
+    expect_rejected("in.ply", format!("{text}0 0 0\n0 0 none\n").as_bytes(), &[], &["point 1 on line 9: error at 1:5"]);
+    expect_rejected(
         "in.ply",
         format!("{text}0 0 0\n").as_bytes(),
         &[],
         &["truncated: 2 points announced, but it ends at line 8"],
     );
-    refuse("in.ply", text.replace("float z", "int z").as_bytes(), &[], &["in.ply", "float or double"]);
-    refuse("in.ply", text.replace("float z", "list uchar int z").as_bytes(), &[], &["in.ply", "x, y and z"]);
-    refuse("in.ply", b"solid", &[], &["in.ply: line 1"]);
+    expect_rejected("in.ply", text.replace("float z", "int z").as_bytes(), &[], &["in.ply", "float or double"]);
+    expect_rejected("in.ply", text.replace("float z", "list uchar int z").as_bytes(), &[], &["in.ply", "x, y and z"]);
+    expect_rejected("in.ply", b"solid", &[], &["in.ply: line 1"]);
     let list_first =
         text.replace("ascii", "binary_little_endian").replace("vertex 2\n", "vertex 2\nproperty list uchar int ring\n");
-    refuse("in.ply", list_first.as_bytes(), &[], &["in.ply", "lists before or among its vertices"]);
+    expect_rejected("in.ply", list_first.as_bytes(), &[], &["in.ply", "lists before or among its vertices"]);
 
-    refuse("in.npy", b"\x93NUMPY\x01", &[], &["in.npy", "truncated in its header"]);
-    refuse("in.npy", &numpy_header("(4, 2)", "<f8"), &[], &["in.npy", "[4, 2]", "(N, 3)"]);
-    refuse("in.npy", &numpy_header("(4, 3)", "<i4"), &[], &["in.npy", "<i4", "f4 or f8"]);
-    refuse("in.npy", &numpy_header("(4, 3)", "<f4"), &[], &["in.npy", "4 points announced", "byte 128"]);
-    refuse("in.obj", b"", &[], &["in.obj", ".ply and .npy alone"]);
+    expect_rejected("in.npy", b"\x93NUMPY\x01", &[], &["in.npy", "truncated in its header"]);
+    expect_rejected("in.npy", &numpy_header("(4, 2)", "<f8"), &[], &["in.npy", "[4, 2]", "(N, 3)"]);
+    expect_rejected("in.npy", &numpy_header("(4, 3)", "<i4"), &[], &["in.npy", "<i4", "f4 or f8"]);
+    expect_rejected("in.npy", &numpy_header("(4, 3)", "<f4"), &[], &["in.npy", "4 points announced", "byte 128"]);
+    expect_rejected("in.obj", b"", &[], &["in.obj", ".ply and .npy alone"]);
 }
 
 #[test]
-fn what_needs_a_mesh_is_refused_by_key() {
+fn errors_name_keys_that_need_a_mesh() {
     let whole = binary_ply(false, &points());
-    let with = |setting: &str, words: &[&str]| refuse("in.ply", &whole, &["--set", setting], words);
+    let with = |setting: &str, parts: &[&str]| expect_rejected("in.ply", &whole, &["--set", setting], parts);
     with("promise.volume=0.1", &["promise.volume", "needs a whole mesh"]);
     with("output.preview=out.png", &["output.preview", "needs a whole mesh"]);
     with("mask.vertices=[1, 0]", &["mask.vertices", "needs a whole mesh"]);
     with("stroke.0.kind=stamp", &["stroke.0", "stamp"]);
-    refuse("in.ply", &whole, &["--output", "out.obj"], &["out.obj", "same extension"]);
+    expect_rejected("in.ply", &whole, &["--output", "out.obj"], &["out.obj", "same extension"]);
     let folder = Folder::with(&[("press.toml", PRESS)]);
     folder.run(&["run", "press.toml", "--stream"]).expect_error(2, &["target", "needs target.mesh"]);
 }
 
-/// Bytes that a stream may have for data, as the README states them; the system enforces it.
+/// Limit on data memory of a stream in bytes, as stated in the README. The system enforces it.
 ///
-/// Of a chunk of 65,536 points there are the bytes of the file, here 24 a point, and the positions before and after the strokes, 24
-/// each: 5 MB. Two files are read and written through 1 MiB each, and three threads have stacks of up to 2 MiB: 13 MB in all, which
-/// leaves a third for the allocator and the library's own.
+/// A chunk of 65,536 points holds 24 bytes of the file and 24 bytes for each position before and after the strokes, per
+/// point: 5 MB. Buffers of 1 MiB for two files and three stacks of up to 2 MiB bring the total to 13 MB. The last third
+/// is for the allocator and the library.
 #[cfg(target_os = "linux")]
 const STREAM_MEMORY: usize = 20_000_000;
 
 #[cfg(target_os = "linux")]
 #[test]
-fn files_larger_than_the_memory_are_streamed() {
+fn streams_files_larger_than_memory() {
     const TIMES: usize = 1000;
     let repeated: Vec<u8> = points().iter().flat_map(|point| point.to_array()).flat_map(f64::to_le_bytes).collect();
     let repeated = repeated.repeat(TIMES);
@@ -227,13 +233,13 @@ fn files_larger_than_the_memory_are_streamed() {
             limited.current_dir(folder.path("")).args(limit).arg(command.get_program()).args(command.get_args());
             crate::folder::Run::of(limited.output().unwrap())
         };
-        // Less would not do, so that the limit is one.
+        // A quarter is too little, so the limit takes effect.
         assert_ne!(run(STREAM_MEMORY / 4).code, Some(0));
         run(STREAM_MEMORY).expect(0);
         let out = folder.read(&name.replace("in", "out"));
         let (first, last) = (&out[header.len()..][..24 * points().len()], &out[out.len() - 24 * points().len()..]);
         assert!(out.len() == header.len() + repeated.len() && first == last);
-        let carried: Vec<u8> = carried(name).iter().flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes).collect();
-        assert!(first == carried);
+        let advected: Vec<u8> = advected(name).iter().flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes).collect();
+        assert!(first == advected);
     }
 }

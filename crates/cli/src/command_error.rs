@@ -1,7 +1,7 @@
-//! What ends a command without a result.
+//! Errors of a command.
 
 use std::{
-    io,
+    io::{self, Write},
     path::{Path, PathBuf},
 };
 
@@ -14,7 +14,7 @@ use isochore_sculpt::{
     recipe::{Location, RecipeError},
 };
 
-/// Why a command did not do its work.
+/// Error that ends a command.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CommandError {
     #[error("{0}")]
@@ -50,7 +50,7 @@ impl CommandError {
         Self::file(path, format!("cannot {verb}: {source}"))
     }
 
-    /// A usage error of clap's, without the lines on usage.
+    /// Turns an error of clap into one line, without its lines about usage.
     pub(crate) fn usage(error: &clap::Error) -> Self {
         if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
             return Self::Usage("no command given; see `isochore --help`, or start with `isochore demo`".to_owned());
@@ -65,12 +65,24 @@ impl CommandError {
         Self::Usage(text.to_owned())
     }
 
+    /// Prints the line `error: …`, or a JSON object, on stderr.
+    pub(crate) fn print(&self, is_json: bool) {
+        let line = if is_json {
+            self.to_json().to_string()
+        } else {
+            let text = self.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ");
+            format!("error: {text}")
+        };
+        // A closed stderr leaves nowhere to report the failure.
+        let _ = writeln!(io::stderr(), "{line}");
+    }
+
     pub(crate) fn exit_code(&self) -> u8 {
         if matches!(self, Self::Interrupted) { 130 } else { 2 }
     }
 
-    /// The error for machines: the message and, where known, the file, the line and the recipe's key.
-    pub(crate) fn to_json(&self) -> serde_json::Value {
+    /// The message and, if known, the file, the line and the recipe key.
+    fn to_json(&self) -> serde_json::Value {
         let mut json = serde_json::json!({ "error": self.to_string() });
         let file = match self {
             Self::Recipe { path, .. } | Self::Replay { path, .. } | Self::File { path, .. } => Some(path),

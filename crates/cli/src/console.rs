@@ -1,4 +1,4 @@
-//! What the user sees while a command works and when it is done.
+//! Progress, messages and results of a command.
 
 use std::{
     io::{self, IsTerminal, Write},
@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::{command_error::CommandError, interrupt::Interrupt};
 
-/// Progress and words on stderr, results on stdout; the [`Monitor`] of all long work.
+/// Prints progress and messages on stderr and results on stdout; the [`Monitor`] of every long operation.
 #[derive(Debug)]
 pub(crate) struct Console {
     bar: ProgressBar,
@@ -20,14 +20,16 @@ pub(crate) struct Console {
     is_json: bool,
 }
 
-/// Steps of the progress bar.
+/// Number of steps of the progress bar.
 const STEPS: u64 = 1000;
 
 impl Console {
+    /// Starts listening for interrupts and shows a progress bar if stderr is a terminal.
+    ///
     /// # Errors
-    /// Where the system refuses to tell of interrupts.
+    /// The handler of interrupts cannot be installed.
     pub(crate) fn new(is_quiet: bool, is_json: bool) -> Result<Self, CommandError> {
-        let interrupt = Interrupt::listen()
+        let interrupt = Interrupt::listen(is_json)
             .map_err(|error| CommandError::Usage(format!("cannot listen for interrupts: {error}")))?;
         let shows_progress = !is_quiet && io::stderr().is_terminal();
         let target = if shows_progress { ProgressDrawTarget::stderr_with_hz(10) } else { ProgressDrawTarget::hidden() };
@@ -48,33 +50,34 @@ impl Console {
         self.is_json
     }
 
-    /// Takes the progress bar away.
+    /// Removes the progress bar.
     pub(crate) fn finish(&self) {
         self.bar.finish_and_clear();
     }
 
-    /// A line on stderr, unless quiet or for machines.
+    /// Prints a line on stderr, unless the console is quiet or prints JSON.
     pub(crate) fn say(&self, line: impl std::fmt::Display) {
         if !self.is_quiet && !self.is_json {
             self.bar.suspend(|| print_line(&mut io::stderr(), line));
         }
     }
 
-    /// A line on stderr, quiet or not, which begins with what sort of line it is: `warning: …`.
-    pub(crate) fn warn(&self, sort: &str, text: impl std::fmt::Display) {
-        let line = match self.is_json {
-            true => serde_json::json!({ sort: text.to_string() }).to_string(),
-            false => format!("{sort}: {text}"),
+    /// Prints a line such as `warning: …` on stderr, even if the console is quiet.
+    pub(crate) fn warn(&self, label: &str, text: impl std::fmt::Display) {
+        let line = if self.is_json {
+            serde_json::json!({ label: text.to_string() }).to_string()
+        } else {
+            format!("{label}: {text}")
         };
         self.bar.suspend(|| print_line(&mut io::stderr(), line));
     }
 
-    /// A line of results on stdout.
+    /// Prints a line of results on stdout.
     pub(crate) fn print(&self, line: impl std::fmt::Display) {
         self.bar.suspend(|| print_line(&mut io::stdout(), line));
     }
 
-    /// An object of results on stdout, as JSON.
+    /// Prints results on stdout as a JSON object.
     pub(crate) fn print_json(&self, value: &impl Serialize) {
         self.print(to_json(value));
     }
@@ -93,22 +96,12 @@ impl Monitor for Console {
     }
 }
 
-/// Indented JSON, without the line break at its end.
+/// Indented JSON without a final line break.
 pub(crate) fn to_json(value: &impl Serialize) -> String {
-    serde_json::to_string_pretty(value).expect("reports have only strings for keys")
+    serde_json::to_string_pretty(value).expect("all keys of a report are strings")
 }
 
-/// The line `error: …`, or the same as a JSON object.
-pub(crate) fn print_error(error: &CommandError, is_json: bool) {
-    if is_json {
-        print_line(&mut io::stderr(), error.to_json());
-    } else {
-        let text = error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ");
-        print_line(&mut io::stderr(), format_args!("error: {text}"));
-    }
-}
-
-/// A reader that has gone away, as `head` does, is no error of ours.
+/// Ignores failure: a reader may close its end early, as `head` does.
 fn print_line(stream: &mut dyn Write, line: impl std::fmt::Display) {
     let _ = writeln!(stream, "{line}");
 }

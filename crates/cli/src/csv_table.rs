@@ -1,10 +1,10 @@
-//! Tables of numbers in comma-separated files.
+//! Tables of numbers in CSV files.
 
 use std::path::{Path, PathBuf};
 
 use crate::command_error::CommandError;
 
-/// Rows of numbers, all of the same length, with the lines that they came from.
+/// Rows of numbers of equal length, with their line numbers in the file.
 #[derive(Debug, Clone)]
 pub(crate) struct CsvTable {
     path: PathBuf,
@@ -13,19 +13,19 @@ pub(crate) struct CsvTable {
 }
 
 impl CsvTable {
-    /// Reads the file at `path`, whose rows have one of the given numbers of columns. A first row without a single
-    /// number is a header; empty lines and lines that begin with # are skipped.
+    /// Reads a table whose number of columns is one of `allowed_columns`. A first row without numbers is a header.
+    /// Empty lines and lines that start with # are skipped.
     ///
     /// # Errors
-    /// Where the file cannot be read, a cell is not a finite number, or a row has another number of columns; row and
-    /// column are named.
+    /// The file cannot be read, has no rows, a cell is not a finite number, or a row has a different number of columns.
+    /// The error names the row and the column.
     pub(crate) fn read(path: &Path, allowed_columns: &[usize]) -> Result<Self, CommandError> {
         let bytes = std::fs::read(path).map_err(|error| CommandError::cannot("read", path, &error))?;
         Self::parse(path, &bytes, allowed_columns)
     }
 
     fn parse(path: &Path, bytes: &[u8], allowed_columns: &[usize]) -> Result<Self, CommandError> {
-        // Spreadsheets begin their files with a mark of the encoding.
+        // Spreadsheets write a byte order mark.
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
@@ -50,7 +50,7 @@ impl CsvTable {
             table.lines.push(line);
         }
         if table.rows.is_empty() {
-            return Err(CommandError::file(path, "has no row of numbers"));
+            return Err(CommandError::file(path, "the file has no row of numbers"));
         }
         Ok(table)
     }
@@ -60,38 +60,38 @@ impl CsvTable {
         if !allowed.contains(&count) {
             let allowed: Vec<String> = allowed.iter().map(usize::to_string).collect();
             let allowed = allowed.join(" or ");
-            return Err(CommandError::file(&self.path, format!("row {line} has {count} columns, not {allowed}")));
+            return Err(CommandError::file(&self.path, format!("row {line} has {count} columns; expected {allowed}")));
         }
         match self.rows.first() {
             Some(first) if first.len() != count => Err(CommandError::file(
                 &self.path,
-                format!("row {line} has {count} columns, where row {} has {}", self.lines[0], first.len()),
+                format!("row {line} has {count} columns, but row {} has {}", self.lines[0], first.len()),
             )),
             _ => Ok(()),
         }
     }
 
-    /// Columns of every row.
+    /// Number of columns.
     pub(crate) fn columns(&self) -> usize {
         self.rows[0].len()
     }
 
-    /// An error about the row with `index`, counted from zero.
+    /// Error about the row `index`, counted from zero.
     pub(crate) fn error(&self, index: usize, problem: impl std::fmt::Display) -> CommandError {
         CommandError::file(&self.path, format!("row {}: {problem}", self.line(index)))
     }
 
-    /// An error about two rows.
+    /// Error about two rows.
     pub(crate) fn error_between(&self, first: usize, second: usize, problem: impl std::fmt::Display) -> CommandError {
         CommandError::file(&self.path, format!("rows {} and {}: {problem}", self.line(first), self.line(second)))
     }
 
-    /// An error about the whole table.
+    /// Error about the whole table.
     pub(crate) fn error_in_file(&self, problem: impl std::fmt::Display) -> CommandError {
         CommandError::file(&self.path, problem)
     }
 
-    /// The line of the row with `index`; beyond the end, that of the last row.
+    /// Line number of the row `index`, or of the last row if `index` is past the end.
     fn line(&self, index: usize) -> u64 {
         self.lines[index.min(self.lines.len() - 1)]
     }
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn headers_comments_and_marks_are_skipped() {
+    fn skips_headers_comments_and_byte_order_marks() {
         for text in ["1,2,3\n4,5,6\n", "x,y,z\n1, 2 ,3\n# four\n4,5,6", "\u{feff}1,2,3\r\n\r\n4,5,6\r\n"] {
             let table = parse(text).unwrap();
             assert_eq!(table.rows, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{text}");
@@ -126,17 +126,17 @@ mod tests {
     }
 
     #[test]
-    fn bad_cells_are_named_by_row_and_column() {
+    fn names_row_and_column_of_invalid_cells() {
         for (text, words) in [
             ("1,2,3\n4,5,six\n", "a.csv: row 2, column 3: `six` is not a number"),
             ("1,2,x\n", "a.csv: row 1, column 3: `x` is not a number"),
             ("x,y,z\n1,NaN,3\n", "a.csv: row 2, column 2: NaN is not a finite number"),
             ("1,2,3\n4,5,1e999\n", "a.csv: row 2, column 3: inf is not a finite number"),
             ("1,2,3\n4,5,\n", "a.csv: row 2, column 3: `` is not a number"),
-            ("1,2\n", "a.csv: row 1 has 2 columns, not 3 or 6"),
-            ("1,2,3\n1,2,3,4,5,6\n", "a.csv: row 2 has 6 columns, where row 1 has 3"),
-            ("x,y,z\n", "a.csv: has no row of numbers"),
-            ("", "a.csv: has no row of numbers"),
+            ("1,2\n", "a.csv: row 1 has 2 columns; expected 3 or 6"),
+            ("1,2,3\n1,2,3,4,5,6\n", "a.csv: row 2 has 6 columns, but row 1 has 3"),
+            ("x,y,z\n", "a.csv: the file has no row of numbers"),
+            ("", "a.csv: the file has no row of numbers"),
         ] {
             assert_eq!(parse(text).unwrap_err(), words);
         }

@@ -1,4 +1,4 @@
-//! `isochore demo`: a newcomer's first run.
+//! `isochore demo`: a first run with built-in meshes.
 
 use std::time::Instant;
 
@@ -6,11 +6,11 @@ use isochore_mesh::io::{self, Format};
 use isochore_sculpt::Meshes;
 
 use crate::{
-    Outcome, arguments::DemoArguments, command_error::CommandError, console::Console, job::Job, run::conclude,
+    arguments::DemoArguments, command_error::CommandError, console::Console, job::Job, outcome::Outcome, run::conclude,
     staging::Staging,
 };
 
-/// What is done, with names of files in the demo's own folder.
+/// The recipe. Its file names are relative to the demo's folder.
 const RECIPE: &str = include_str!("demo/press.toml");
 const RECIPE_NAME: &str = "press.toml";
 
@@ -30,9 +30,9 @@ pub(crate) fn demo(arguments: &DemoArguments, console: &Console) -> Result<Outco
     let mut meshes = Meshes::new();
     for (name, bytes) in MESHES {
         let path = folder.join(name);
-        let wrong = |error: &dyn std::fmt::Display| CommandError::file(&path, error);
-        let format = Format::of_path(&path).ok_or_else(|| wrong(&"unknown mesh format"))?;
-        let mesh = io::read_bytes(format, bytes).map_err(|error| wrong(&error))?;
+        let invalid = |error: &dyn std::fmt::Display| CommandError::file(&path, error);
+        let format = Format::of_path(&path).ok_or_else(|| invalid(&"unknown mesh format"))?;
+        let mesh = io::read_bytes(format, bytes).map_err(|error| invalid(&error))?;
         meshes.insert(name.to_owned(), mesh.into());
         let draft = staging.add_file(&path)?;
         staging.write(&draft, bytes)?;
@@ -41,7 +41,7 @@ pub(crate) fn demo(arguments: &DemoArguments, console: &Console) -> Result<Outco
     staging.write(&draft, RECIPE.as_bytes())?;
 
     let job = Job::parse(&recipe_path, RECIPE.as_bytes().to_vec(), &[])?;
-    let report = job.carry_out(meshes, start.elapsed().as_secs_f64(), staging, console)?;
+    let report = job.execute(meshes, start.elapsed().as_secs_f64(), staging, console)?;
     console.finish();
     if !console.is_json() {
         let first_line = RECIPE.lines().next().unwrap_or_default();
@@ -53,7 +53,7 @@ pub(crate) fn demo(arguments: &DemoArguments, console: &Console) -> Result<Outco
         for path in outputs.into_iter().flatten() {
             console.say(path.display());
         }
-        console.say(format_args!("Change {0} and do it again: isochore run {0}", recipe_path.display()));
+        console.say(format_args!("Edit {0}, then run it again: isochore run {0}", recipe_path.display()));
     }
     Ok(outcome)
 }

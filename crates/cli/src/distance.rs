@@ -4,28 +4,30 @@ use isochore_mesh::{DistanceField, DistanceFieldError, DistanceFieldOptions, Pad
 use npyz::WriterBuilder;
 use serde::Serialize;
 
-use crate::{Outcome, arguments::DistanceArguments, command_error::CommandError, console::Console, staging::Staging};
+use crate::{
+    arguments::DistanceArguments, command_error::CommandError, console::Console, outcome::Outcome, staging::Staging,
+};
 
-/// What goes beside the array.
+/// Contents of the JSON file beside the array.
 #[derive(Debug, Clone, Serialize)]
-struct Description {
+struct Metadata {
     /// Position of the sample with index [0, 0, 0], model units.
     origin: [f64; 3],
-    /// Distance of neighboring samples, model units.
+    /// Distance between neighboring samples, model units.
     cell: f64,
-    /// Samples along x, y and z.
+    /// Number of samples along x, y and z.
     dims: [usize; 3],
-    /// No sample is farther from the exact distance than this, model units.
+    /// Upper bound of the error of a sample, model units.
     error_bound: f64,
 }
 
 pub(crate) fn distance(arguments: &DistanceArguments, console: &Console) -> Result<Outcome, CommandError> {
     if arguments.output.extension().is_none_or(|extension| extension != "npy") {
-        return Err(CommandError::file(&arguments.output, "must end in .npy"));
+        return Err(CommandError::file(&arguments.output, "the output must end in .npy"));
     }
     let mut staging = Staging::new(console.interrupt());
-    let array = staging.add_file(&arguments.output)?;
-    let description = staging.add_file(&arguments.output.with_extension("json"))?;
+    let array_draft = staging.add_file(&arguments.output)?;
+    let metadata_draft = staging.add_file(&arguments.output.with_extension("json"))?;
 
     let mesh = io::read(&arguments.mesh)?;
     let options = DistanceFieldOptions {
@@ -39,34 +41,34 @@ pub(crate) fn distance(arguments: &DistanceArguments, console: &Console) -> Resu
     })?;
     if !field.is_closed() {
         let mesh = arguments.mesh.display();
-        let text = "the mesh is open; its inside is taken to be where its winding number is above one half";
+        let text = "the mesh is open; points with a winding number above 1/2 count as inside";
         console.warn("warning", format_args!("{mesh}: {text}"));
     }
     let grid = field.grid();
-    staging.write(&array, &npy(field.samples(), grid.dims))?;
-    let facts = Description {
+    staging.write(&array_draft, &npy(field.samples(), grid.dims))?;
+    let metadata = Metadata {
         origin: grid.origin.to_array(),
         cell: grid.cell,
         dims: grid.dims,
         error_bound: field.sample_error(),
     };
-    staging.write(&description, format!("{}\n", crate::console::to_json(&facts)).as_bytes())?;
+    staging.write(&metadata_draft, format!("{}\n", crate::console::to_json(&metadata)).as_bytes())?;
     staging.commit()?;
     console.finish();
     if console.is_json() {
-        console.print_json(&facts);
+        console.print_json(&metadata);
     } else {
         let [x, y, z] = grid.dims;
         let name = arguments.output.display();
         console.say(format_args!(
-            "{name}: {x} × {y} × {z} samples, {:.3e} apart, to {:.1e}",
-            facts.cell, facts.error_bound
+            "{name}: {x} × {y} × {z} samples, spacing {:.3e}, error at most {:.1e}",
+            metadata.cell, metadata.error_bound
         ));
     }
     Ok(Outcome::Done)
 }
 
-/// The samples, x fastest, as an array with index [z, y, x].
+/// Encodes samples, with x varying fastest, as an array with index [z, y, x].
 fn npy(samples: &[f32], dims: [usize; 3]) -> Vec<u8> {
     let [x, y, z] = dims.map(|count| count as u64);
     let mut bytes = Vec::with_capacity(size_of_val(samples) + 128);
@@ -75,6 +77,6 @@ fn npy(samples: &[f32], dims: [usize; 3]) -> Vec<u8> {
         writer.extend(samples.iter().copied())?;
         writer.finish()
     };
-    write().expect("there are as many samples as the grid has nodes, and memory takes them all");
+    write().expect("the shape matches the number of samples, and writing to memory does not fail");
     bytes
 }

@@ -1,20 +1,20 @@
-//! `isochore inspect`: what a mesh is like.
+//! `isochore inspect`: mesh statistics.
 
 use isochore_mesh::{ClosedMesh, SelfIntersectionError, SelfIntersections, TriMesh, io};
 use isochore_sculpt::Bounds;
 use serde::Serialize;
 
-use crate::{Outcome, arguments::InspectArguments, command_error::CommandError, console::Console};
+use crate::{arguments::InspectArguments, command_error::CommandError, console::Console, outcome::Outcome};
 
-/// The facts about a mesh.
+/// Statistics of a mesh.
 #[derive(Debug, Clone, Serialize)]
-struct Facts {
+struct Statistics {
     vertices: usize,
     triangles: usize,
     components: usize,
     closed: bool,
     oriented: bool,
-    /// Signed, cubic model units; none for a mesh that encloses no volume.
+    /// Signed, in cubic model units; `None` unless the mesh is a closed, oriented manifold.
     volume: Option<f64>,
     area: f64,
     bounds: Bounds,
@@ -25,19 +25,19 @@ struct Facts {
 
 pub(crate) fn inspect(arguments: &InspectArguments, console: &Console) -> Result<Outcome, CommandError> {
     let mesh = io::read(&arguments.mesh)?;
-    let facts = Facts::of(&mesh, console).map_err(|error| match error {
+    let statistics = Statistics::of(&mesh, console).map_err(|error| match error {
         SelfIntersectionError::Cancelled(cancelled) => cancelled.into(),
         error => CommandError::file(&arguments.mesh, error),
     })?;
     if console.is_json() {
-        console.print_json(&facts);
+        console.print_json(&statistics);
     } else {
-        console.print(facts);
+        console.print(statistics);
     }
     Ok(Outcome::Done)
 }
 
-impl Facts {
+impl Statistics {
     fn of(mesh: &TriMesh, console: &Console) -> Result<Self, SelfIntersectionError> {
         let check = mesh.check();
         let bounds = mesh.bounds();
@@ -57,9 +57,9 @@ impl Facts {
     }
 }
 
-impl std::fmt::Display for Facts {
+impl std::fmt::Display for Statistics {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let yes_or_no = |fact| if fact { "yes" } else { "no" }.to_owned();
+        let yes_or_no = |is_true| if is_true { "yes" } else { "no" }.to_owned();
         let Bounds { min, max } = &self.bounds;
         let lines = [
             ("vertices", self.vertices.to_string()),
@@ -69,7 +69,9 @@ impl std::fmt::Display for Facts {
             ("oriented", yes_or_no(self.oriented)),
             (
                 "volume",
-                self.volume.map_or("none: no closed, oriented manifold".to_owned(), |volume| volume.to_string()),
+                self.volume.map_or("none (the mesh is not a closed, oriented manifold)".to_owned(), |volume| {
+                    volume.to_string()
+                }),
             ),
             ("area", self.area.to_string()),
             ("bounds", format!("{min:?} to {max:?}")),

@@ -1,4 +1,4 @@
-//! Ctrl-C.
+//! Ctrl-C and requests to terminate.
 
 use std::{
     path::{Path, PathBuf},
@@ -10,11 +10,13 @@ use std::{
     time::Duration,
 };
 
-/// How long the work may take to notice that it is to stop, before the process ends over its head. Longer, and Ctrl-C seems
-/// dead during a stage that never asks; shorter, and stages that ask now and then are not left to end in order.
+use crate::command_error::CommandError;
+
+/// Time that running work has to notice an interrupt before the process exits. Larger makes Ctrl-C seem dead during a
+/// stage that never checks; smaller exits before a stage that checks rarely can stop by itself.
 const PATIENCE: Duration = Duration::from_millis(700);
 
-/// A flag that Ctrl-C raises, and the unfinished outputs that must not stay behind.
+/// A flag that Ctrl-C raises, and the temporary folders to remove before an immediate exit.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Interrupt {
     shared: Arc<Shared>,
@@ -26,7 +28,7 @@ struct Shared {
     unfinished: Mutex<Unfinished>,
 }
 
-/// What a process that ends at once would leave behind.
+/// Temporary folders that an immediate exit would leave behind.
 #[derive(Debug, Default)]
 pub(crate) struct Unfinished {
     folders: Vec<PathBuf>,
@@ -34,48 +36,54 @@ pub(crate) struct Unfinished {
 }
 
 impl Unfinished {
-    /// Declares the outputs to be in place: an interrupt comes too late.
+    /// Marks the outputs as complete; a later interrupt is ignored.
     pub(crate) fn commit(&mut self) {
         self.is_committed = true;
     }
 }
 
 impl Interrupt {
-    /// Listens for Ctrl-C and requests to terminate, from now on and for as long as the process lives.
+    /// Listens for Ctrl-C and requests to terminate until the process ends.
     ///
     /// # Errors
-    /// Where the system refuses.
-    pub(crate) fn listen() -> Result<Self, ctrlc::Error> {
+    /// The system refuses the handler.
+    pub(crate) fn listen(is_json: bool) -> Result<Self, ctrlc::Error> {
         let interrupt = Self::default();
-        let heard = interrupt.clone();
-        ctrlc::set_handler(move || {
-            heard.shared.is_raised.store(true, Ordering::SeqCst);
-            thread::sleep(PATIENCE);
-            // Waits for outputs that are just being put in place: those are all there or none.
-            let unfinished = heard.unfinished();
-            if unfinished.is_committed {
-                return;
-            }
-            unfinished.folders.iter().for_each(|folder| drop(std::fs::remove_dir_all(folder)));
-            let error = crate::command_error::CommandError::Interrupted;
-            crate::console::print_error(&error, std::env::args_os().any(|argument| argument == "--json"));
-            std::process::exit(error.exit_code().into());
-        })?;
+        let handled = interrupt.clone();
+        ctrlc::set_handler(move || handled.exit_unless_committed(is_json))?;
         Ok(interrupt)
+    }
+
+    /// Raises the flag, waits for the work to stop by itself, and otherwise ends the process.
+    fn exit_unless_committed(&self, is_json: bool) {
+        self.shared.is_raised.store(true, Ordering::SeqCst);
+        thread::sleep(PATIENCE);
+        // A commit holds this lock, so the outputs are complete or untouched from here on.
+        let unfinished = self.unfinished();
+        if unfinished.is_committed {
+            return;
+        }
+        for folder in &unfinished.folders {
+            // The process ends either way; a folder that cannot be removed stays.
+            let _ = std::fs::remove_dir_all(folder);
+        }
+        let error = CommandError::Interrupted;
+        error.print(is_json);
+        std::process::exit(error.exit_code().into());
     }
 
     pub(crate) fn is_raised(&self) -> bool {
         self.shared.is_raised.load(Ordering::SeqCst)
     }
 
-    /// Remembers a folder to remove should the process have to end at once.
+    /// Registers a temporary folder to remove if the process must exit immediately.
     pub(crate) fn add_unfinished(&self, folder: &Path) {
         self.unfinished().folders.push(folder.to_owned());
     }
 
-    /// Keeps the process from ending over the head of its work for as long as the guard lives.
+    /// Locks the list of temporary folders. The interrupt handler cannot end the process while the guard exists.
     pub(crate) fn unfinished(&self) -> MutexGuard<'_, Unfinished> {
-        // The list stays whole whatever thread panicked with it.
+        // A thread that panicked while holding the lock cannot have left the list inconsistent.
         self.shared.unfinished.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,20 +1,22 @@
-//! The command `isochore`: deforms meshes from recipes, inspects them, samples their distance, and
-//! carries frames and profiles along curves.
+//! The command `isochore`: deforms meshes by recipes, prints mesh statistics, samples signed distances, and computes
+//! frames and swept surfaces along curves.
 //!
-//! Everything that it does is in the libraries; here are arguments, files, words and exit codes. A command line is read in
-//! two stages: [`arguments`] holds it as plain data, and each subcommand's own module makes objects of it.
+//! The computations are in the libraries. This crate handles arguments, files, messages and exit codes. It parses a
+//! command line in two stages: [`arguments`] holds it as plain data, and the module of each subcommand turns that data
+//! into objects.
 //!
 //! | exit code | meaning |
 //! |---|---|
-//! | 0 | done, and every promise of the recipe was kept |
-//! | 1 | a promise was missed; the outputs are written and the report names it |
-//! | 2 | bad input or usage; nothing is written |
+//! | 0 | success; all promises of the recipe were kept |
+//! | 1 | a promise was not kept; the outputs are written and the report names the promise |
+//! | 2 | invalid input or usage; nothing is written |
 //! | 130 | interrupted; nothing is written |
 //!
-//! Data goes to stdout; words go to stderr, errors as one line `error: …`.
+//! Data goes to stdout and messages go to stderr. An error is one line that starts with `error: `.
 
 pub mod arguments;
 mod command_error;
+mod completions;
 mod console;
 mod csv_table;
 mod demo;
@@ -23,10 +25,14 @@ mod frames;
 mod inspect;
 mod interrupt;
 mod job;
+mod man;
+mod outcome;
+mod outputs;
 mod preview;
 mod run;
 mod schema;
 mod spine_file;
+mod spine_options;
 mod staging;
 mod stream;
 mod sweep;
@@ -38,33 +44,33 @@ use clap::Parser;
 use arguments::{Arguments, Command};
 use command_error::CommandError;
 use console::Console;
+use outcome::Outcome;
 
-/// How a command that did its work ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Outcome {
-    Done,
-    PromiseMissed,
-}
-
-/// Runs the command line `arguments`, the program's name first.
+/// Runs a command line. Its first item is the name of the program.
+///
+/// ```
+/// use std::process::ExitCode;
+///
+/// let arguments = ["isochore", "--version"].map(Into::into);
+/// assert_eq!(isochore_cli::main(arguments), ExitCode::SUCCESS);
+/// ```
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    // Usage errors are reported before there are parsed arguments that could tell how.
+    // A usage error is reported before `Arguments` exist, so the flag is searched for here.
     let is_json = arguments.iter().any(|argument| argument == "--json");
     let result = match Arguments::try_parse_from(&arguments) {
         Ok(arguments) => execute(&arguments),
         Err(error) if !error.use_stderr() => {
-            // The only failure is a closed stdout, and then there is no one to tell.
+            // Printing help or the version fails only if stdout is closed, and then nobody reads it.
             let _ = error.print();
             return ExitCode::SUCCESS;
         }
         Err(error) => Err(CommandError::usage(&error)),
     };
     match result {
-        Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::PromiseMissed) => ExitCode::from(1),
+        Ok(outcome) => outcome.into(),
         Err(error) => {
-            console::print_error(&error, is_json);
+            error.print(is_json);
             ExitCode::from(error.exit_code())
         }
     }
@@ -86,8 +92,10 @@ fn execute(arguments: &Arguments) -> Result<Outcome, CommandError> {
         Command::Sweep(arguments) => sweep::sweep(arguments, &console),
         Command::Demo(arguments) => demo::demo(arguments, &console),
         Command::Schema(arguments) => schema::schema(arguments, &console),
+        Command::Completions(arguments) => completions::completions(arguments, &console),
+        Command::Man(arguments) => man::man(arguments, &console),
     };
     console.finish();
-    // Whatever went wrong after an interrupt may be its consequence.
+    // An error after an interrupt is usually a consequence of it.
     if console.interrupt().is_raised() { result.map_err(|_| CommandError::Interrupted) } else { result }
 }

@@ -1,10 +1,10 @@
-//! `isochore schema`: the shape of recipes and reports, for editors and other programs.
+//! `isochore schema`: JSON schemas of recipes and reports, for editors and other programs.
 
 use crate::{
-    Outcome,
     arguments::{Document, SchemaArguments},
     command_error::CommandError,
     console::Console,
+    outcome::Outcome,
 };
 
 pub(crate) fn schema(arguments: &SchemaArguments, console: &Console) -> Result<Outcome, CommandError> {

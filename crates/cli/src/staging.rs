@@ -1,4 +1,4 @@
-//! Outputs that appear all together and whole, or not at all.
+//! Atomic output: all files of a command appear complete, or none does.
 
 use std::{
     collections::BTreeMap,
@@ -7,42 +7,46 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use isochore_mesh::{
+    TriMesh,
+    io::{self as mesh_io, WriteError},
+};
 use tempfile::TempDir;
 
 use crate::{command_error::CommandError, interrupt::Interrupt};
 
-/// Files being written beside the places where they are to appear.
+/// Files that are written to temporary folders, the drafts, and moved to their targets by [`commit`](Self::commit).
 ///
-/// Dropped without [`commit`](Self::commit), it leaves everything as it was.
+/// Dropping it without a commit removes the drafts and leaves all targets unchanged.
 #[derive(Debug)]
 pub(crate) struct Staging {
     interrupt: Interrupt,
-    /// Temporary folders by the folder that they stand in.
-    workshops: BTreeMap<PathBuf, TempDir>,
+    /// Temporary folder by the folder that contains it.
+    temporary: BTreeMap<PathBuf, TempDir>,
     files: Vec<Staged>,
     new_folders: Vec<PathBuf>,
 }
 
 #[derive(Debug)]
 struct Staged {
-    /// Where it is written.
+    /// Temporary path.
     draft: PathBuf,
-    /// Where it is to appear.
+    /// Final path.
     target: PathBuf,
 }
 
 impl Staging {
     pub(crate) fn new(interrupt: &Interrupt) -> Self {
-        Self { interrupt: interrupt.clone(), workshops: BTreeMap::new(), files: Vec::new(), new_folders: Vec::new() }
+        Self { interrupt: interrupt.clone(), temporary: BTreeMap::new(), files: Vec::new(), new_folders: Vec::new() }
     }
 
-    /// Promises a folder, which is made on [`commit`](Self::commit) if it is missing.
+    /// Adds a folder, which [`commit`](Self::commit) creates if it is missing.
     ///
     /// # Errors
-    /// Where the folder that it stands in is missing, or something else has its name.
+    /// The parent folder is missing, or the path exists and is not a folder.
     pub(crate) fn add_folder(&mut self, folder: &Path) -> Result<(), CommandError> {
         if !folder.exists() {
-            self.workshop(parent(folder))?;
+            self.temporary_folder(parent(folder))?;
             self.new_folders.push(folder.to_owned());
         } else if !folder.is_dir() {
             return Err(CommandError::file(folder, "is not a folder; choose another name"));
@@ -50,33 +54,34 @@ impl Staging {
         Ok(())
     }
 
-    /// The place to write the file that is to appear as `target`.
+    /// Adds the file `target`. Returns the path of its draft.
     ///
     /// # Errors
-    /// Where its folder is missing or cannot be written, or something else has its name.
+    /// The folder of `target` is missing or cannot be written, `target` exists and is not a regular file, or it was
+    /// added before.
     pub(crate) fn add_file(&mut self, target: &Path) -> Result<PathBuf, CommandError> {
         if self.files.iter().any(|staged| staged.target == target) {
-            return Err(CommandError::file(target, "two outputs would go to this file; rename one"));
+            return Err(CommandError::file(target, "two outputs have this path; rename one"));
         }
         if fs::metadata(target).is_ok_and(|metadata| !metadata.is_file()) {
             return Err(CommandError::file(target, "is not a regular file; choose another name"));
         }
         let folder = parent(target);
         let folder = if self.new_folders.iter().any(|new| new == folder) { parent(folder) } else { folder };
-        // The extension tells the format, and so must stay.
-        let name = target.file_name().ok_or_else(|| CommandError::file(target, "names no file"))?;
+        // The draft keeps the name, because its extension selects the format.
+        let name = target.file_name().ok_or_else(|| CommandError::file(target, "the path has no file name"))?;
         let index = self.files.len().to_string();
-        let room = self.workshop(folder)?.join(index);
-        fs::create_dir(&room).map_err(|error| CommandError::cannot("write", target, &error))?;
-        let draft = room.join(name);
+        let slot = self.temporary_folder(folder)?.join(index);
+        fs::create_dir(&slot).map_err(|error| CommandError::cannot("write", target, &error))?;
+        let draft = slot.join(name);
         self.files.push(Staged { draft: draft.clone(), target: target.to_owned() });
         Ok(draft)
     }
 
-    /// Writes the bytes of the file that is to appear where `draft` was promised.
+    /// Writes the bytes of a draft.
     ///
     /// # Errors
-    /// Where the disk is full, or the like; the error names the target.
+    /// The system cannot write the file, for example because the disk is full. The error names the target.
     pub(crate) fn write(&self, draft: &Path, bytes: &[u8]) -> Result<(), CommandError> {
         let write = || {
             let mut file = fs::File::create(draft)?;
@@ -86,15 +91,32 @@ impl Staging {
         write().map_err(|error| CommandError::cannot("write", self.target_of(draft), &error))
     }
 
-    /// The file that is to appear in the end where `draft` is written now.
+    /// Writes a mesh to a draft. The extension selects the format.
+    ///
+    /// # Errors
+    /// The mesh does not fit the format, or the system cannot write the file. The error names the target.
+    pub(crate) fn write_mesh(&self, draft: &Path, mesh: &TriMesh) -> Result<(), CommandError> {
+        mesh_io::write(draft, mesh).map_err(|error| {
+            let path = self.target_of(draft).to_owned();
+            match error {
+                WriteError::Io { source, .. } => WriteError::Io { path, source },
+                WriteError::Invalid { source, .. } => WriteError::Invalid { path, source },
+                WriteError::TooLarge { vertex, .. } => WriteError::TooLarge { path, vertex },
+                error @ WriteError::UnknownFormat { .. } => error,
+            }
+            .into()
+        })
+    }
+
+    /// Target of a draft.
     pub(crate) fn target_of<'a>(&'a self, draft: &'a Path) -> &'a Path {
         self.files.iter().find(|staged| staged.draft == draft).map_or(draft, |staged| &staged.target)
     }
 
-    /// Puts all files in place. From here on an interrupt comes too late.
+    /// Moves all drafts to their targets. Later interrupts are ignored.
     ///
     /// # Errors
-    /// [`CommandError::Interrupted`], or what the system says; everything is then as it was.
+    /// [`CommandError::Interrupted`], or an error of the system. All targets are then unchanged.
     pub(crate) fn commit(self) -> Result<(), CommandError> {
         let mut unfinished = self.interrupt.unfinished();
         if self.interrupt.is_raised() {
@@ -102,16 +124,16 @@ impl Staging {
         }
         let mut undo = Undo::default();
         for folder in &self.new_folders {
-            fs::create_dir(folder).map_err(|error| CommandError::cannot("make", folder, &error))?;
+            fs::create_dir(folder).map_err(|error| CommandError::cannot("create", folder, &error))?;
             undo.steps.push(Step::RemoveFolder(folder.clone()));
         }
         for Staged { draft, target } in &self.files {
             let cannot = |error: io::Error| CommandError::cannot("write", target, &error);
             let mut step = Step::RemoveFile(target.clone());
             if let Ok(metadata) = fs::metadata(target) {
-                // Beside the room of the draft: in it, an output may have any name, this one too.
+                // Beside the slot of the draft, not in it: there the name could collide with that of the output.
                 let kept = parent(draft).with_extension("previous");
-                // Linked, not moved, so that there is no moment without a file; copied where there are no links.
+                // A link keeps the target in place until it is replaced. Some file systems have no links and need a copy.
                 fs::hard_link(target, &kept).or_else(|_| fs::copy(target, &kept).map(drop)).map_err(cannot)?;
                 fs::set_permissions(draft, metadata.permissions()).map_err(cannot)?;
                 step = Step::Restore { kept, target: target.clone() };
@@ -124,23 +146,23 @@ impl Staging {
         Ok(())
     }
 
-    fn workshop(&mut self, folder: &Path) -> Result<&Path, CommandError> {
-        if !self.workshops.contains_key(folder) {
+    fn temporary_folder(&mut self, folder: &Path) -> Result<&Path, CommandError> {
+        if !self.temporary.contains_key(folder) {
             if !folder.is_dir() {
                 let problem =
-                    if folder.exists() { "is not a folder" } else { "this folder does not exist; make it first" };
+                    if folder.exists() { "is not a folder" } else { "this folder does not exist; create it first" };
                 return Err(CommandError::file(folder, problem));
             }
-            let made = tempfile::Builder::new().prefix(".isochore-").tempdir_in(folder);
-            let made = made.map_err(|error| CommandError::cannot("write in", folder, &error))?;
-            self.interrupt.add_unfinished(made.path());
-            self.workshops.insert(folder.to_owned(), made);
+            let created = tempfile::Builder::new().prefix(".isochore-").tempdir_in(folder);
+            let created = created.map_err(|error| CommandError::cannot("write in", folder, &error))?;
+            self.interrupt.add_unfinished(created.path());
+            self.temporary.insert(folder.to_owned(), created);
         }
-        Ok(self.workshops[folder].path())
+        Ok(self.temporary[folder].path())
     }
 }
 
-/// The folder of a file, `.` for a bare name.
+/// Parent folder of a path; `.` for a bare name.
 fn parent(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -148,7 +170,7 @@ fn parent(path: &Path) -> &Path {
     }
 }
 
-/// Takes back what was done, last step first, unless it is emptied before it is dropped.
+/// Steps of a commit. Dropping it reverts them in reverse order, unless it was cleared.
 #[derive(Debug, Default)]
 struct Undo {
     steps: Vec<Step>,
@@ -164,7 +186,7 @@ enum Step {
 impl Drop for Undo {
     fn drop(&mut self) {
         for step in self.steps.drain(..).rev() {
-            // A step that fails leaves nothing better to do than the steps before it.
+            // If a step cannot be reverted, the earlier ones still can.
             let _ = match step {
                 Step::RemoveFolder(folder) => fs::remove_dir(folder),
                 Step::RemoveFile(file) => fs::remove_file(file),
@@ -186,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_appears_before_commit_and_nothing_stays_without() {
+    fn leaves_targets_unchanged_without_a_commit() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.txt");
         fs::write(&target, "old").unwrap();
@@ -200,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn commit_puts_all_in_place_and_makes_folders() {
+    fn commits_files_and_creates_folders() {
         let folder = tempfile::tempdir().unwrap();
         let mut staging = Staging::new(&Interrupt::default());
         let frames = folder.path().join("frames");
@@ -215,9 +237,9 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_any_name_is_replaced() {
+    fn replaces_a_file_of_any_name() {
         let folder = tempfile::tempdir().unwrap();
-        // Whatever the file that was there before is kept as must not meet the new one.
+        // The backup of the previous file must not collide with the draft.
         for name in ["a", "a.txt", ".previous", "a.previous", "0.previous"] {
             let target = folder.path().join(name);
             fs::write(&target, "old").unwrap();
@@ -230,14 +252,14 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_midway_restores_what_was_there() {
+    fn restores_targets_after_a_failure() {
         let folder = tempfile::tempdir().unwrap();
         let [first, second] = ["a.txt", "b.txt"].map(|name| folder.path().join(name));
         fs::write(&first, "old").unwrap();
         let mut staging = Staging::new(&Interrupt::default());
         let draft = staging.add_file(&first).unwrap();
         staging.write(&draft, b"new").unwrap();
-        // The second draft is never written, so that it cannot be put in place.
+        // The second draft is never written, so moving it fails.
         staging.add_file(&second).unwrap();
         assert!(staging.commit().is_err());
         assert_eq!(names(folder.path()), ["a.txt"]);
@@ -245,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn places_that_cannot_take_a_file_are_refused() {
+    fn rejects_unusable_targets() {
         let folder = tempfile::tempdir().unwrap();
         let mut staging = Staging::new(&Interrupt::default());
         assert!(staging.add_file(folder.path()).is_err(), "a folder");

@@ -3,11 +3,10 @@
 use std::{
     fs::File,
     io::{self, BufWriter, Write},
-    path::PathBuf,
+    path::{Path, PathBuf},
     time::Instant,
 };
 
-use glam::DVec3;
 use isochore_mesh::{
     Aabb, Monitor,
     io::{PointStream, PointStreamError},
@@ -15,14 +14,14 @@ use isochore_mesh::{
 use isochore_sculpt::{PointFlow, Recipe, Source, StreamReport};
 
 use crate::{
-    Outcome,
     command_error::CommandError,
     console::{Console, to_json},
     job::Job,
+    outcome::Outcome,
     staging::Staging,
 };
 
-/// Points that are in memory at once. Larger takes more memory; smaller hands each thread too little at a time.
+/// Number of points in memory. Larger needs more memory; smaller leaves each thread too little work.
 const CHUNK: usize = 1 << 16;
 
 pub(crate) fn stream(mut job: Job, console: &Console) -> Result<Outcome, CommandError> {
@@ -35,24 +34,15 @@ pub(crate) fn stream(mut job: Job, console: &Console) -> Result<Outcome, Command
     let meshes = job.read_tools()?;
     let needs_bounds = PointFlow::needs_bounds(&job.recipe);
     let bounds = if needs_bounds { bounds(&input, &job.recipe, console)? } else { Aabb::EMPTY };
-    let flow = PointFlow::new(&job.recipe, &meshes, bounds, console).map_err(|error| job.failed(error.into()))?;
+    let flow = PointFlow::new(&job.recipe, &meshes, bounds, console).map_err(|error| job.replay_error(error.into()))?;
     let source = Source { text: &job.text, overrides: &job.settings };
     let mut report = StreamReport::new(&job.recipe, source, flow.warnings.clone());
     report.seconds.prepare = start.elapsed().as_secs_f64();
 
-    let name = |error| match (error, &job.outputs.mesh) {
-        (PointStreamError::Write(error), Some(target)) => CommandError::cannot("write", target, &error),
-        (error, _) => error.into(),
-    };
+    let pass = Pass { input: &input, job: &job, flow: &flow, console };
     match draft {
-        Some(draft) => {
-            let file = File::create(draft).map_err(PointStreamError::Write).map_err(name)?;
-            let mut writer = BufWriter::with_capacity(1 << 20, file);
-            carry(&input, &job, &flow, &mut writer, &mut report, console, name)?;
-            let synced = writer.into_inner().map_err(io::Error::from).and_then(|file| file.sync_all());
-            synced.map_err(PointStreamError::Write).map_err(name)?;
-        }
-        None => carry(&input, &job, &flow, &mut io::sink(), &mut report, console, name)?,
+        Some(draft) => pass.write_file(&draft, &mut report)?,
+        None => pass.copy(&mut io::sink(), &mut report)?,
     }
     if let Some(draft) = &report_draft {
         staging.write(draft, format!("{}\n", to_json(&report)).as_bytes())?;
@@ -62,7 +52,10 @@ pub(crate) fn stream(mut job: Job, console: &Console) -> Result<Outcome, Command
     Ok(Outcome::Done)
 }
 
-/// The file of points, if the recipe asks for nothing that they alone cannot give.
+/// Path of the points to stream.
+///
+/// # Errors
+/// The recipe needs a whole mesh, or the extension of the output differs from that of the input.
 fn input(job: &Job) -> Result<PathBuf, CommandError> {
     let source = |source| CommandError::Recipe { path: job.path.clone(), source };
     let input = job.beside(PointFlow::streamed_file(&job.recipe).map_err(source)?);
@@ -76,8 +69,8 @@ fn input(job: &Job) -> Result<PathBuf, CommandError> {
     }
 }
 
-/// The box of all points of a file, placed in the world.
-fn bounds(input: &PathBuf, recipe: &Recipe, console: &Console) -> Result<Aabb, CommandError> {
+/// Bounding box of all points of a file in world space.
+fn bounds(input: &Path, recipe: &Recipe, console: &Console) -> Result<Aabb, CommandError> {
     let mut stream = PointStream::open(input)?;
     stream.copy_before(&mut io::sink())?;
     let (mut bounds, mut points, mut done) = (Aabb::EMPTY, Vec::new(), 0);
@@ -90,42 +83,62 @@ fn bounds(input: &PathBuf, recipe: &Recipe, console: &Console) -> Result<Aabb, C
     Ok(bounds)
 }
 
-/// Copies the file of points with these carried along the strokes.
-fn carry(
-    input: &PathBuf,
-    job: &Job,
-    flow: &PointFlow,
-    writer: &mut dyn Write,
-    report: &mut StreamReport,
-    console: &Console,
-    name: impl Fn(PointStreamError) -> CommandError,
-) -> Result<(), CommandError> {
-    let mut stream = PointStream::open(input).map_err(&name)?;
-    stream.copy_before(writer).map_err(&name)?;
-    let mut points: Vec<DVec3> = Vec::new();
-    loop {
-        let read_start = Instant::now();
-        if !stream.read_chunk(CHUNK, &mut points).map_err(&name)? {
-            break;
-        }
-        let advect_start = Instant::now();
-        points = PointFlow::place(&job.recipe, points);
-        let carried = flow.advect(&points, &OfOneChunk(console))?;
-        report.add(&points, &carried);
-        let write_start = Instant::now();
-        stream.write_chunk(&carried, writer).map_err(&name)?;
-        report.seconds.read += (advect_start - read_start).as_secs_f64();
-        report.seconds.advect += (write_start - advect_start).as_secs_f64();
-        report.seconds.write += write_start.elapsed().as_secs_f64();
-        console.check("stream", report.points as f64 / stream.count() as f64)?;
-    }
-    stream.copy_after(writer).map_err(name)
+/// One pass over the file of points.
+struct Pass<'a> {
+    input: &'a Path,
+    job: &'a Job,
+    flow: &'a PointFlow,
+    console: &'a Console,
 }
 
-/// Hears of an interrupt amid a chunk, but tells of no progress, which would begin anew with each chunk.
-struct OfOneChunk<'a>(&'a Console);
+impl Pass<'_> {
+    fn write_file(&self, draft: &Path, report: &mut StreamReport) -> Result<(), CommandError> {
+        let write_error = |error| self.error(PointStreamError::Write(error));
+        let file = File::create(draft).map_err(write_error)?;
+        let mut writer = BufWriter::with_capacity(1 << 20, file);
+        self.copy(&mut writer, report)?;
+        let synced = writer.into_inner().map_err(io::Error::from).and_then(|file| file.sync_all());
+        synced.map_err(write_error)
+    }
 
-impl Monitor for OfOneChunk<'_> {
+    /// Copies the file chunk by chunk and advects its points.
+    fn copy(&self, writer: &mut dyn Write, report: &mut StreamReport) -> Result<(), CommandError> {
+        let error = |error| self.error(error);
+        let mut stream = PointStream::open(self.input).map_err(error)?;
+        stream.copy_before(writer).map_err(error)?;
+        let mut points = Vec::new();
+        loop {
+            let read_start = Instant::now();
+            if !stream.read_chunk(CHUNK, &mut points).map_err(error)? {
+                break;
+            }
+            let advect_start = Instant::now();
+            points = PointFlow::place(&self.job.recipe, points);
+            let advected = self.flow.advect(&points, &ChunkMonitor(self.console))?;
+            report.add(&points, &advected);
+            let write_start = Instant::now();
+            stream.write_chunk(&advected, writer).map_err(error)?;
+            report.seconds.read += (advect_start - read_start).as_secs_f64();
+            report.seconds.advect += (write_start - advect_start).as_secs_f64();
+            report.seconds.write += write_start.elapsed().as_secs_f64();
+            self.console.check("stream", report.points as f64 / stream.count() as f64)?;
+        }
+        stream.copy_after(writer).map_err(error)
+    }
+
+    /// Adds the path of the output to an error of writing, which happens in a temporary file.
+    fn error(&self, error: PointStreamError) -> CommandError {
+        match (error, &self.job.outputs.mesh) {
+            (PointStreamError::Write(error), Some(target)) => CommandError::cannot("write", target, &error),
+            (error, _) => error.into(),
+        }
+    }
+}
+
+/// Forwards interrupts during a chunk. Ignores its progress, which would restart at zero with every chunk.
+struct ChunkMonitor<'a>(&'a Console);
+
+impl Monitor for ChunkMonitor<'_> {
     fn is_cancelled(&self) -> bool {
         self.0.is_cancelled()
     }
@@ -141,5 +154,5 @@ fn conclude(report: &StreamReport, job: &Job, console: &Console) {
     }
     let name = job.outputs.mesh.as_ref().map_or("result".to_owned(), |path| path.display().to_string());
     let StreamReport { points, moved_points, max_displacement, .. } = report;
-    console.say(format_args!("{name}: {points} points, {moved_points} moved by up to {max_displacement:.3e}"));
+    console.say(format_args!("{name}: {points} points, {moved_points} moved, by at most {max_displacement:.3e}"));
 }

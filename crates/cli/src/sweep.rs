@@ -1,192 +1,112 @@
-//! `isochore sweep`: the surface that a profile sweeps along a curve, as a mesh or as an exact rational net.
+//! `isochore sweep`: the surface that a cross-section sweeps along a curve, as a mesh or as exact rational patches.
 
 use std::path::Path;
 
-use glam::{DVec2, DVec3};
-use isochore_curve::{RationalCrossSection, sweep as sweep_grid};
-use isochore_mesh::{GridMesh, TriMesh, io};
+use isochore_curve::sweep as sweep_grid;
+use isochore_mesh::{
+    GridMesh, TriMesh,
+    io::{Format, WriteError},
+};
 
 use crate::{
-    Outcome,
     arguments::{SweepArguments, Twist},
     command_error::CommandError,
     console::Console,
-    csv_table::CsvTable,
-    job::write_mesh,
+    outcome::Outcome,
     spine_file::SpineFile,
+    spine_options::{Rotation, SpineOptions},
     staging::Staging,
 };
 
+mod cross_section;
 mod net;
 mod step;
 
+use cross_section::CrossSection;
 use net::Net;
 
-/// Formats that hold the surface itself.
+/// File format of the surface.
 #[derive(Debug, Clone, Copy)]
-enum Exact {
+enum Surface {
+    Mesh,
+    /// Exact patches as JSON.
     Json,
+    /// Exact patches as STEP.
     Step,
 }
 
-impl Exact {
-    fn of_path(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-            "json" => Some(Self::Json),
-            "step" | "stp" => Some(Self::Step),
-            _ => None,
+impl Surface {
+    fn of_path(path: &Path) -> Result<Self, CommandError> {
+        let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+        match extension.as_deref() {
+            Some("json") => Ok(Self::Json),
+            Some("step" | "stp") => Ok(Self::Step),
+            _ if Format::of_path(path).is_some() => Ok(Self::Mesh),
+            _ => Err(WriteError::UnknownFormat { path: path.to_owned() }.into()),
         }
     }
 }
 
-/// Points of a Bézier profile on a mesh.
-const BEZIER_POINTS: usize = 33;
-
 pub(crate) fn sweep(arguments: &SweepArguments, console: &Console) -> Result<Outcome, CommandError> {
-    let exact = Exact::of_path(&arguments.output);
-    if exact.is_none() && io::Format::of_path(&arguments.output).is_none() {
-        let path = arguments.output.clone();
-        return Err(io::WriteError::UnknownFormat { path }.into());
+    let surface = Surface::of_path(&arguments.output)?;
+    check(arguments)?;
+    if !matches!(surface, Surface::Mesh) {
+        net::check(arguments)?;
     }
+    let default_twist = if arguments.spine.closed { Twist::Minimal } else { Twist::None };
+    let options = SpineOptions::new(&arguments.spine, default_twist)?;
     let mut staging = Staging::new(console.interrupt());
     let draft = staging.add_file(&arguments.output)?;
-    let profile = Profile::read(arguments)?;
-    let spine = SpineFile::read(&arguments.spine)?;
-    if let Some(format) = exact {
-        let net = Net::new(arguments, &spine, profile.curves(), profile.is_closed)?;
-        let text = match format {
-            Exact::Json => net.to_json(),
-            Exact::Step => step::to_step(&net, &arguments.output),
-        };
-        staging.write(&draft, text.as_bytes())?;
-        staging.commit()?;
-        console.finish();
-        console.say(format_args!("{}: {net}", arguments.output.display()));
-        return Ok(Outcome::Done);
-    }
-    let mesh = mesh(arguments, &spine, &profile)?;
-    write_mesh(&staging, &draft, &mesh)?;
+    let outline = CrossSection::read(arguments)?;
+    let spine = SpineFile::read(&options)?;
+    let exact = || Net::new(&options, &spine, &outline);
+    let summary = match surface {
+        Surface::Mesh => {
+            let mesh = mesh(&options, &spine, &outline, arguments.caps)?;
+            staging.write_mesh(&draft, &mesh)?;
+            format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len())
+        }
+        Surface::Json => {
+            let net = exact()?;
+            staging.write(&draft, net.to_json().as_bytes())?;
+            net.to_string()
+        }
+        Surface::Step => {
+            let net = exact()?;
+            staging.write(&draft, step::to_step(&net, &arguments.output).as_bytes())?;
+            net.to_string()
+        }
+    };
     staging.commit()?;
     console.finish();
-    console.say(format_args!(
-        "{}: {} vertices, {} triangles",
-        arguments.output.display(),
-        mesh.positions.len(),
-        mesh.triangles.len()
-    ));
+    console.say(format_args!("{}: {summary}", arguments.output.display()));
     Ok(Outcome::Done)
 }
 
-/// A profile as read.
-#[derive(Debug)]
-struct Profile {
-    /// Homogeneous control points or, with unit weights, points.
-    rows: Vec<DVec3>,
-    is_bezier: bool,
-    is_closed: bool,
-}
-
-impl Profile {
-    fn read(arguments: &SweepArguments) -> Result<Self, CommandError> {
-        let columns: &[usize] = if arguments.bezier { &[2, 3] } else { &[2] };
-        let table = CsvTable::read(&arguments.profile, columns)?;
-        let mut rows = Vec::with_capacity(table.rows.len());
-        for (index, row) in table.rows.iter().enumerate() {
-            let weight = row.get(2).copied().unwrap_or(1.0);
-            if weight <= 0.0 {
-                return Err(table.error(index, "a weight must be above 0"));
-            }
-            rows.push((DVec2::new(row[0], row[1]) * weight).extend(weight));
-        }
-        let needed = if arguments.profile_closed { 3 } else { 2 };
-        if rows.len() < needed {
-            return Err(table.error_in_file(format!("a profile needs at least {needed} rows, not {}", rows.len())));
-        }
-        if arguments.profile_closed && arguments.bezier {
-            let problem = "--profile-closed joins the last row to the first; a Bézier curve closes by equal end rows";
-            return Err(CommandError::Usage(problem.to_owned()));
-        }
-        if arguments.profile_closed && rows[0] == rows[rows.len() - 1] {
-            let problem = "repeats the first row; with --profile-closed leave it out, the profile returns by itself";
-            return Err(table.error(rows.len() - 1, problem));
-        }
-        Ok(Self { rows, is_bezier: arguments.bezier, is_closed: arguments.profile_closed })
-    }
-
-    /// The points that are swept, counter-clockwise where they close.
-    fn points(&self) -> Vec<DVec2> {
-        if self.is_bezier {
-            return (0..BEZIER_POINTS).map(|i| self.point(i as f64 / (BEZIER_POINTS - 1) as f64)).collect();
-        }
-        let mut points: Vec<DVec2> = self.rows.iter().map(|row| row.truncate()).collect();
-        let doubled_area: f64 = (0..points.len()).map(|i| points[i].perp_dot(points[(i + 1) % points.len()])).sum();
-        if self.is_closed && doubled_area < 0.0 {
-            // Outside out.
-            points.reverse();
-        }
-        points
-    }
-
-    /// The point of the Bézier curve at `parameter`.
-    fn point(&self, parameter: f64) -> DVec2 {
-        let mut points = self.rows.clone();
-        while points.len() > 1 {
-            points = points.windows(2).map(|pair| pair[0].lerp(pair[1], parameter)).collect();
-        }
-        points[0].truncate() / points[0].z
-    }
-
-    /// The rational curves that make up the profile.
-    fn curves(&self) -> Vec<RationalCrossSection> {
-        if self.is_bezier {
-            return vec![RationalCrossSection { control_points: self.rows.clone() }];
-        }
-        let count = self.rows.len();
-        let sides = if self.is_closed { count } else { count - 1 };
-        (0..sides).map(|i| RationalCrossSection { control_points: vec![self.rows[i], self.rows[(i + 1) % count]] }).collect()
-    }
-}
-
-fn mesh(arguments: &SweepArguments, spine: &SpineFile, profile: &Profile) -> Result<TriMesh, CommandError> {
-    let default_twist = if arguments.spine.closed { Twist::Minimal } else { Twist::None };
-    let result = spine.stations(&arguments.spine, default_twist)?;
-    let is_twist_closed = result.is_closed && arguments.spine.twist != Some(Twist::None);
-    if arguments.caps && (result.is_closed || !profile.is_closed) {
-        let problem =
-            "--caps closes the ends of an open curve with a closed profile; see --closed and --profile-closed";
-        return Err(CommandError::Usage(problem.to_owned()));
-    }
-    // Where the frames close, the last station is the first again.
-    let rows = result.stations.len() - usize::from(is_twist_closed);
-    let points = profile.points();
-    let grid = sweep_grid(&result.stations[..rows], &points);
-    let grid = GridMesh {
-        points: &grid.points,
-        columns: grid.columns,
-        rows_close: is_twist_closed,
-        columns_close: profile.is_closed,
+/// Rejects options that contradict each other.
+fn check(arguments: &SweepArguments) -> Result<(), CommandError> {
+    let problem = if arguments.profile_closed && arguments.bezier {
+        "--profile-closed does not apply to --bezier; close a Bézier curve by equal first and last rows"
+    } else if arguments.caps && (arguments.spine.closed || !arguments.profile_closed) {
+        "--caps needs an open curve and a closed cross-section; remove --closed and add --profile-closed"
+    } else {
+        return Ok(());
     };
-    Ok(if arguments.caps { grid.capped_mesh(&points) } else { grid.mesh() })
+    Err(CommandError::Usage(problem.to_owned()))
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn clockwise_profiles_are_turned_around() {
-        let rows = [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)].map(|(x, y)| DVec3::new(x, y, 1.0)).to_vec();
-        let profile = Profile { rows, is_bezier: false, is_closed: true };
-        assert_eq!(profile.points()[0], DVec2::X);
-        assert_eq!(profile.curves().len(), 3);
-    }
-
-    #[test]
-    fn rational_profiles_keep_their_weights() {
-        // A quarter circle.
-        let weight = std::f64::consts::FRAC_1_SQRT_2;
-        let rows = vec![DVec3::new(1.0, 0.0, 1.0), DVec3::new(weight, weight, weight), DVec3::new(0.0, 1.0, 1.0)];
-        let profile = Profile { rows, is_bezier: true, is_closed: false };
-        assert!(profile.points().iter().all(|point| (point.length() - 1.0).abs() < 1e-15));
-    }
+fn mesh(
+    options: &SpineOptions,
+    spine: &SpineFile,
+    outline: &CrossSection,
+    has_caps: bool,
+) -> Result<TriMesh, CommandError> {
+    let result = spine.stations(options)?;
+    let rows_close = result.is_closed && !matches!(options.rotation, Rotation::None);
+    // If the frames close, the last station equals the first.
+    let rows = result.stations.len() - usize::from(rows_close);
+    let points = outline.points();
+    let grid = sweep_grid(&result.stations[..rows], &points);
+    let grid = GridMesh { points: &grid.points, columns: grid.columns, rows_close, columns_close: outline.is_closed };
+    Ok(if has_caps { grid.capped_mesh(&points) } else { grid.mesh() })
 }

@@ -1,28 +1,30 @@
 //! The swept surface as exact rational patches.
 
-use isochore_curve::{RationalPatch, RationalCrossSection, RationalRotation};
+use isochore_curve::{RationalPatch, RationalRotation};
 use serde::Serialize;
 
 use crate::{
     arguments::{Method, SweepArguments, Twist},
     command_error::CommandError,
     spine_file::SpineFile,
+    spine_options::SpineOptions,
+    sweep::cross_section::CrossSection,
 };
 
 /// Rational tensor-product Bézier patches over a spline of Pythagorean-hodograph cubics.
 #[derive(Debug)]
 pub(super) struct Net {
-    /// Patches by segment of the curve and by curve of the profile.
+    /// Patches, indexed by segment of the curve, then by curve of the cross-section.
     pub(super) patches: Vec<Vec<RationalPatch>>,
-    /// Whether the last curve of the profile is followed by the first.
-    pub(super) is_profile_closed: bool,
+    /// Whether the cross-section is closed.
+    pub(super) is_outline_closed: bool,
 }
 
-/// The net as it is written.
+/// Contents of the JSON file.
 #[derive(Debug, Serialize)]
 struct NetFile {
     kind: &'static str,
-    /// Degree along the profile.
+    /// Degree along the cross-section.
     degree_u: usize,
     /// Degree along the curve.
     degree_v: usize,
@@ -32,26 +34,24 @@ struct NetFile {
 /// One patch over [0, 1]².
 #[derive(Debug, Serialize)]
 struct PatchFile {
-    /// Segment of the curve.
+    /// Index of the segment of the curve.
     segment: usize,
-    /// Curve of the profile.
+    /// Index of the curve of the cross-section.
     side: usize,
-    /// Control points [x, y, z, weight], not multiplied by their weight; index [u][v].
+    /// Control points [x, y, z, weight] in Cartesian coordinates; index [u][v].
     control_points: Vec<Vec<[f64; 4]>>,
 }
 
 impl Net {
-    /// The surface that `profile` sweeps along the rows of `spine`.
-    pub(super) fn new(
-        arguments: &SweepArguments,
-        spine: &SpineFile,
-        profile: Vec<RationalCrossSection>,
-        is_profile_closed: bool,
-    ) -> Result<Self, CommandError> {
-        refuse(arguments)?;
+    /// Sweeps a cross-section along the Pythagorean-hodograph spline through the rows of `spine`.
+    ///
+    /// # Errors
+    /// A segment has no such cubic, or the reference vector is parallel to the first tangent.
+    pub(super) fn new(options: &SpineOptions, spine: &SpineFile, outline: &CrossSection) -> Result<Self, CommandError> {
+        let curves = outline.curves();
         let spline = spine.ph_spline()?;
         let frames = spline
-            .exact_frames(spine.reference(&arguments.spine), 1)
+            .exact_frames(spine.reference(options), 1)
             .map_err(|error| CommandError::Usage(format!("--r0: {error}")))?;
         let patches = spline
             .segments()
@@ -59,12 +59,12 @@ impl Net {
             .zip(&frames)
             .map(|(cubic, (_, frame))| {
                 let rotation = RationalRotation::symmetric(cubic);
-                // The profile stands where the exact frame does at the start of the segment.
+                // Aligns the cross-section with the exact frame at the start of the segment.
                 let angle = cubic.frenet_frame(0.0).angle_to(frame.r);
-                profile.iter().map(|curve| RationalPatch::sweep(cubic, &rotation, curve, angle)).collect()
+                curves.iter().map(|curve| RationalPatch::sweep(cubic, &rotation, curve, angle)).collect()
             })
             .collect();
-        Ok(Self { patches, is_profile_closed })
+        Ok(Self { patches, is_outline_closed: outline.is_closed })
     }
 
     pub(super) fn to_json(&self) -> String {
@@ -79,8 +79,8 @@ impl Net {
             })
             .collect();
         let net = NetFile { kind: "rational Bézier patches", degree_u, degree_v, patches };
-        // On one line: indented, every number would have its own.
-        format!("{}\n", serde_json::to_string(&net).expect("a net has only strings for keys"))
+        // Compact, because indented JSON puts every number on its own line.
+        format!("{}\n", serde_json::to_string(&net).expect("all keys of a net are strings"))
     }
 
     fn degrees(&self) -> [usize; 2] {
@@ -93,21 +93,21 @@ impl std::fmt::Display for Net {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let [across, along] = self.degrees();
         let count: usize = self.patches.iter().map(Vec::len).sum();
-        write!(f, "{count} patches of degree {along} along the curve and {across} along the profile")
+        write!(f, "{count} patches of degree {along} along the curve and {across} along the cross-section")
     }
 }
 
-/// What a rational surface cannot have.
-fn refuse(arguments: &SweepArguments) -> Result<(), CommandError> {
+/// Rejects options that do not apply to an exact surface.
+pub(super) fn check(arguments: &SweepArguments) -> Result<(), CommandError> {
     let spine = &arguments.spine;
     let problem = if spine.method.is_some_and(|method| method != Method::Ph) {
-        "an exact surface is one over Pythagorean-hodograph cubics: take --method ph, or write a mesh"
+        "an exact surface needs Pythagorean-hodograph cubics; use --method ph, or write a mesh"
     } else if spine.twist.is_some_and(|twist| twist != Twist::None) {
-        "an exact surface has rotation-minimizing frames, which --twist would change; write a mesh"
+        "an exact surface needs rotation-minimizing frames, which --twist changes; remove it, or write a mesh"
     } else if arguments.caps {
-        "an exact surface has no caps; write a mesh"
+        "an exact surface has no caps; remove --caps, or write a mesh"
     } else if spine.samples_per_segment.is_some() {
-        "an exact surface is not sampled: leave out --samples-per-segment"
+        "an exact surface is not sampled; remove --samples-per-segment, or write a mesh"
     } else {
         return Ok(());
     };

@@ -1,4 +1,4 @@
-//! Exact surfaces as STEP files (ISO 10303-21), which CAD programs read.
+//! STEP files (ISO 10303-21) of exact surfaces, for CAD programs.
 
 use std::path::Path;
 
@@ -15,15 +15,15 @@ use super::net::Net;
 
 type Shell = CompressedShell<Point3, NurbsCurve<Vector4>, NurbsSurface<Vector4>>;
 
-/// The surface as one open shell, in which neighboring faces share their edges.
+/// Encodes the surface as one open shell whose neighboring faces share edges.
 ///
-/// Model units are written as millimeters, since STEP wants a unit; numbers below a hundredth have eleven digits, larger
-/// ones all.
+/// STEP requires a unit of length, so model units become millimeters. Numbers below 0.01 are written with eleven digits,
+/// larger ones exactly.
 pub(super) fn to_step(net: &Net, path: &Path) -> String {
     let shell = shell(net);
     let header = StepHeaderDescriptor {
         file_name: path.file_name().unwrap_or_default().to_string_lossy().replace(['\'', '\\'], "_"),
-        // The same surface shall give the same file.
+        // A fixed time makes the file reproducible.
         time_stamp: "1970-01-01T00:00:00".to_owned(),
         organization_system: "isochore".to_owned(),
         ..StepHeaderDescriptor::default()
@@ -33,30 +33,30 @@ pub(super) fn to_step(net: &Net, path: &Path) -> String {
 
 fn shell(net: &Net) -> Shell {
     let (segments, sides) = (net.patches.len(), net.patches[0].len());
-    let corners = if net.is_profile_closed { sides } else { sides + 1 };
-    // Joints of the curve times corners of the profile.
+    let corners = if net.is_outline_closed { sides } else { sides + 1 };
+    // Vertices form a grid: joints of the curve times corners of the cross-section.
     let vertex = |joint: usize, corner: usize| joint * corners + corner % corners;
     let across = |joint: usize, side: usize| joint * sides + side;
     let along = |segment: usize, corner: usize| (segments + 1) * sides + segment * corners + corner % corners;
-    // The patch that ends at a joint or a corner speaks for it where none begins there.
+    // The patch that starts at a joint or corner, or the one that ends there at the last.
     let patch = |segment: usize, side: usize| &net.patches[segment.min(segments - 1)][side.min(sides - 1)];
     let mut shell = Shell { vertices: Vec::new(), edges: Vec::new(), faces: Vec::new() };
     for joint in 0..=segments {
         for corner in 0..corners {
-            let corner_of = Sampled { patch: patch(joint, corner), u_end: corner == sides, v_end: joint == segments };
-            shell.vertices.push(corner_of.vertex());
+            let end = PatchCorner { patch: patch(joint, corner), u_end: corner == sides, v_end: joint == segments };
+            shell.vertices.push(end.vertex());
         }
     }
     for joint in 0..=segments {
         for side in 0..sides {
-            let edge = Sampled { patch: patch(joint, side), u_end: false, v_end: joint == segments };
+            let edge = PatchCorner { patch: patch(joint, side), u_end: false, v_end: joint == segments };
             let vertices = (vertex(joint, side), vertex(joint, side + 1));
             shell.edges.push(CompressedEdge { vertices, curve: edge.across() });
         }
     }
     for segment in 0..segments {
         for corner in 0..corners {
-            let edge = Sampled { patch: patch(segment, corner), u_end: corner == sides, v_end: false };
+            let edge = PatchCorner { patch: patch(segment, corner), u_end: corner == sides, v_end: false };
             let vertices = (vertex(segment, corner), vertex(segment + 1, corner));
             shell.edges.push(CompressedEdge { vertices, curve: edge.along() });
         }
@@ -80,15 +80,15 @@ fn shell(net: &Net) -> Shell {
     shell
 }
 
-/// The edges and the corner of a patch at one end of each of its directions.
+/// A corner of a patch and the two edges that meet there.
 #[derive(Debug, Clone, Copy)]
-struct Sampled<'a> {
+struct PatchCorner<'a> {
     patch: &'a RationalPatch,
     u_end: bool,
     v_end: bool,
 }
 
-impl Sampled<'_> {
+impl PatchCorner<'_> {
     fn row(&self) -> &[DVec4] {
         let width = self.patch.spine_degree + 1;
         let row = if self.u_end { self.patch.cross_section_degree } else { 0 };
