@@ -1,5 +1,5 @@
-//! A closed spine whose rotation-minimizing frame does not close, and frames that do: by the least twist, and with one
-//! and two turns more, spread by turning and by arc length (figure 13 of Wang et al. 2008).
+//! A closed spine whose rotation-minimizing frame does not close, and frames that do: with the minimal twist and with one
+//! and two additional turns, proportional to the turning angle and to arc length (figure 13 of Wang et al. 2008).
 
 use std::error::Error;
 
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frames = rotation_minimizing_frames(&spine, start, FrameMethod::DoubleReflection, Default::default())?.stations;
     for (name, law) in [("closed_frames_turning", TwistLaw::Curvature), ("closed_frames_arc", TwistLaw::ArcLength)] {
         let mut bodies = vec![(
-            format!("rotation-minimizing\nopen by {:.4} rad", closing_angle(&frames)),
+            format!("rotation-minimizing\ngap {:.4} rad", closing_angle(&frames)),
             banded(&spine, &frames, false),
         )];
         for turns in 0..=2 {
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let speed = total_angular_speed(&spine, &twisted.angles);
             let squared = total_squared_angular_speed(&spine, &twisted.angles);
             bodies.push((
-                format!("{turns} turns more: gap {}\nspeed {speed:.3}, squared {squared:.3}", small(gap)),
+                format!("{turns} additional turns: gap {}\nspeed {speed:.3}, squared {squared:.3}", small(gap)),
                 banded(&spine, &twisted.stations, true),
             ));
         }
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A closed curve with two sharp and two gentle bends, out of its plane.
+/// A closed space curve with two sharp and two gentle bends.
 fn bent_ellipse() -> TrigonometricCurve {
     let term = |frequency, cosine, sine| TrigonometricTerm { frequency, cosine, sine };
     TrigonometricCurve::new(
@@ -68,7 +68,7 @@ fn banded(spine: &Spine, frames: &[Frame], closes: bool) -> (TriMesh, Vec<DVec3>
     let stations: Stations = (0..).map(|station| spine.point(station)).zip(frames.iter().copied()).collect();
     let mesh = swept_body(&stations, &strap(0.36, 0.07), closes);
     let (red, pale) = (DVec3::new(0.55, 0.06, 0.03), DVec3::new(0.62, 0.55, 0.42));
-    // Two triangles a cell, four cells a row, the first of them on the upper side.
+    // A row has four cells of two triangles; the first cell is on the upper side.
     let colors = (0..mesh.triangles.len()).map(|triangle| if (triangle / 2) % 4 == 0 { red } else { pale }).collect();
     (mesh, colors)
 }

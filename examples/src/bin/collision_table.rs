@@ -1,7 +1,8 @@
-#![expect(clippy::print_stdout, reason = "examples tell where their files are")]
+#![expect(clippy::print_stdout, reason = "examples print the paths of their files")]
 
-//! Six cases like those of table 13.1 of Zheng's thesis, whose models and paths are not published: change of volume without
-//! lock, as given and refined, and frames per second on one core, beside the printed figures. Writes `collision_table.md`.
+//! Six cases similar to table 13.1 of Zheng's thesis, whose models and paths are not published. Measures the change of
+//! volume without the volume lock, unrefined and refined, and frames per second on one core, and lists them beside the
+//! published values. Writes `collision_table.md`.
 
 use std::{error::Error, fmt::Write, fs};
 
@@ -9,7 +10,7 @@ use isochore_examples::{folder, scene};
 use isochore_field::{DeformOptions, Stroke, deform};
 use isochore_mesh::NoProgress;
 
-/// Recipe, then the thesis' model, triangles, volumes before and after, and frames per second.
+/// Recipe; model, triangles, volumes before and after, and frames per second in the thesis.
 const CASES: [(&str, &str, usize, f64, f64, f64); 6] = [
     ("sphere", "sphere (C)", 11_200, 2.132, 2.127, 78.0),
     ("hare", "bunny (C)", 23_380, 1.997, 1.988, 36.0),
@@ -24,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "| recipe | triangles | change | refined to | change | frames/s | thesis | triangles | change | frames/s |\n\
          |---|---:|---:|---:|---:|---:|---|---:|---:|---:|\n",
     );
-    // One core, as the thesis had.
+    // One core, as in the thesis.
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     for (recipe, model, triangles, before, after, frames) in CASES {
         let scene = scene(recipe)?;
@@ -51,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A frame is a step of the integrator; what needs none is one frame.
+/// Number of frames: steps of the integrator, or one for strokes in closed form.
 fn steps(stroke: &Stroke) -> usize {
     match stroke {
         Stroke::Move(stroke) => stroke.steps(),

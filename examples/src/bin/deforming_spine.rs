@@ -1,5 +1,5 @@
-//! Frames of a spine that bends through a plane curve with an inflection: the Frenet frame flips in an instant, the
-//! rotation-minimizing frame hardly moves (figure 1.2 of Zheng's thesis, on the curve of its section 3.4).
+//! Frames of a spine that deforms through a planar curve with an inflection. The Frenet frame flips abruptly; the
+//! rotation-minimizing frame hardly changes (figure 1.2 of Zheng's thesis, on the curve of its section 3.4).
 
 use std::error::Error;
 
@@ -13,7 +13,7 @@ use isochore_picture::{Body, Camera, Options, Paint, Panel};
 
 const SEGMENTS: usize = 400;
 
-/// How far the two middle control points stand out of the plane, from picture to picture.
+/// Height of the two inner control points above the plane in each picture.
 const HEIGHTS: [f64; 3] = [0.1, 0.02, -0.02];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     .zip(&frames)
                     .map(|(a, b)| libm::atan2(a.r.cross(b.r).length(), a.r.dot(b.r)))
                     .fold(0.0, f64::max);
-                format!("moved by {largest:.3} rad at most")
+                format!("change at most {largest:.3} rad")
             });
             let (mesh, colors) = banded(&spine, &frames);
             bodies.push((format!("{name}, height {height}\n{moved}"), mesh, colors));

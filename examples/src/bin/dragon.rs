@@ -1,4 +1,4 @@
-//! The body of a dragon along a spine, with a frame that has the crest up at the tail and at the head (figure 7.4 of
+//! The body of a dragon along a spine. A twisted frame keeps the crest upright at the tail and at the head (figure 7.4 of
 //! Zheng's thesis).
 
 use std::error::Error;
@@ -15,7 +15,7 @@ use isochore_picture::{Body, Camera, Options, Paint, Panel};
 const SEGMENTS: usize = 900;
 const COLUMNS: usize = 40;
 
-/// Stations from spike to spike of the crest.
+/// Number of stations between two spikes of the crest.
 const SPIKE: usize = 18;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -45,12 +45,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let off = |frames: &[Frame]| frames[SEGMENTS].angle_to(DVec3::Z).abs();
     let bodies = [
         (
-            format!("rotation-minimizing: the crest at the head is {:.3} rad off", off(&minimizing)),
+            format!("rotation-minimizing: the crest at the head is off by {:.3} rad", off(&minimizing)),
             dragon(&spine, &minimizing),
         ),
         (
             format!(
-                "twisted by {:.3} rad in all: {} rad off",
+                "twisted by {:.3} rad in total: off by {} rad",
                 twisted.angles[SEGMENTS].abs(),
                 small(off(&twisted.stations))
             ),
@@ -68,13 +68,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     save_figure("dragon", &bodies[1].1.0, &panels, &camera, &options)
 }
 
-/// The body: r is up at its crest.
+/// The body, with its crest in the direction of r.
 fn dragon(spine: &Spine, frames: &[Frame]) -> (TriMesh, Vec<DVec3>) {
     let stations: Stations = (0..).map(|station| spine.point(station)).zip(frames.iter().copied()).collect();
     let mesh = varying_body(&stations, COLUMNS, |row, column| {
         let radius = radius(row);
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * column as f64 / COLUMNS as f64);
-        // The crest is a saw along the back, leaning to the tail.
+        // The crest is a sawtooth along the back that leans toward the tail.
         let spike = if column == 0 { 0.9 * (row % SPIKE) as f64 / SPIKE as f64 } else { 0.0 };
         DVec2::new(cos + spike, 0.85 * sin) * radius
     });
@@ -93,10 +93,10 @@ fn dragon(spine: &Spine, frames: &[Frame]) -> (TriMesh, Vec<DVec3>) {
     (mesh, colors)
 }
 
-/// Thin at the tail, thickest at two thirds, rounded at the head.
+/// Radius: thin at the tail, largest at two thirds, rounded at the head.
 fn radius(row: usize) -> f64 {
-    let share = row as f64 / SEGMENTS as f64;
-    let to_end = ((share - 0.94) / 0.06).max(0.0);
+    let fraction = row as f64 / SEGMENTS as f64;
+    let to_end = ((fraction - 0.94) / 0.06).max(0.0);
     let round = (1.0 - to_end * to_end).max(0.0004).sqrt();
-    (0.012 + 0.24 * libm::sin(std::f64::consts::PI * share * (0.35 + 0.45 * share))) * round
+    (0.012 + 0.24 * libm::sin(std::f64::consts::PI * fraction * (0.35 + 0.45 * fraction))) * round
 }

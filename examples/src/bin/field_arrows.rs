@@ -1,5 +1,6 @@
-//! Arrows of fields on a section: red inside the tool, blue outside, green the tool's own motion (figures 11.2 to 11.5 of
-//! Zheng's thesis, the upper half of 12.6); colored by speed for a tool of free form (figure 12.1).
+//! Velocity arrows on a section through a field: red inside the tool, blue outside, green for the motion of the tool
+//! (figures 11.2 to 11.5 and the upper half of 12.6 of Zheng's thesis). Arrows of a free-form tool are colored by speed
+//! (figure 12.1).
 
 use std::error::Error;
 
@@ -13,23 +14,23 @@ const RED: DVec3 = DVec3::new(0.75, 0.03, 0.02);
 const BLUE: DVec3 = DVec3::new(0.03, 0.10, 0.65);
 const GREEN: DVec3 = DVec3::new(0.02, 0.45, 0.04);
 
-/// Arrows along the longer side of a section.
+/// Number of arrows along the longer side of a section.
 const ARROWS: f64 = 42.0;
 
-/// Slower than this share of the fastest, a place has no arrow.
+/// Speed, as a fraction of the largest, below which no arrow is drawn. Larger hides the outer field; smaller draws dots.
 const SLOWEST: f64 = 0.02;
 
-/// Steps of the color scale of speeds.
+/// Number of colors for speeds.
 const COLORS: usize = 12;
 
-/// A field on a plane through the middle of its support.
+/// A field on a plane through the center of its support.
 struct Figure {
     name: &'static str,
     recipe: &'static str,
-    /// The motion between two keys, from 0.
+    /// Index of the motion between two keys.
     leg: usize,
     time: f64,
-    /// Across the plane of the section; toward the eye.
+    /// Normal of the section, toward the viewer.
     normal: DVec3,
     colors: Colors,
 }
@@ -82,7 +83,7 @@ fn draw(figure: &Figure) -> Result<(), Box<dyn Error>> {
     let fields = match &scene.strokes[0] {
         Stroke::Move(stroke) => stroke.fields(),
         Stroke::Field(stroke) => stroke.fields().cloned().collect(),
-        _ => return Err("a twist or bend acts everywhere and has no section of its own".into()),
+        _ => return Err("a twist or bend acts on all of space and has no section".into()),
     };
     let field = fields[figure.leg].at(figure.time);
     let normal = figure.normal.normalize();
@@ -94,18 +95,18 @@ fn draw(figure: &Figure) -> Result<(), Box<dyn Error>> {
         (sample.point - half, sample.point + half)
     };
     let seen = || samples.iter().filter(|sample| sample.velocity.length() > SLOWEST * fastest);
-    let body = |color: DVec3, is_chosen: &dyn Fn(&Sample) -> bool| {
-        let arrows: Vec<_> = seen().filter(|sample| is_chosen(sample)).map(arrow).collect();
+    let body = |color: DVec3, is_included: &dyn Fn(&Sample) -> bool| {
+        let arrows: Vec<_> = seen().filter(|sample| is_included(sample)).map(arrow).collect();
         Body::arrows(&arrows, 0.06 * spacing, color)
     };
-    let caption = format!("fastest {:.3} of the tool's own speed", fastest / core_speed(&samples));
+    let caption = format!("largest speed: {:.3} of the speed of the tool", fastest / core_speed(&samples));
     let mut panel = Panel::new(caption);
     match figure.colors {
         Colors::BySide => {
             panel = panel.with(body(RED, &|sample| sample.is_inside)).with(body(BLUE, &|sample| !sample.is_inside));
-            if let Some((middle, motion)) = motion(&samples, normal) {
+            if let Some((center, motion)) = motion(&samples, normal) {
                 let size = ARROWS * spacing;
-                let start = middle + 0.02 * size * normal;
+                let start = center + 0.02 * size * normal;
                 let arrow = [(start, start + 0.3 * size * motion)];
                 panel = panel.with(Body::arrows(&arrow, 0.008 * size, GREEN));
             }
@@ -113,8 +114,8 @@ fn draw(figure: &Figure) -> Result<(), Box<dyn Error>> {
         Colors::BySpeed => {
             for color in 0..COLORS {
                 let class = |sample: &Sample| (COLORS as f64 * sample.velocity.length() / fastest) as usize;
-                let is_chosen = |sample: &Sample| class(sample).min(COLORS - 1) == color;
-                panel = panel.with(body(scale_color(color as f64 / (COLORS - 1) as f64), &is_chosen));
+                let is_in_class = |sample: &Sample| class(sample).min(COLORS - 1) == color;
+                panel = panel.with(body(scale_color(color as f64 / (COLORS - 1) as f64), &is_in_class));
             }
         }
     }
@@ -128,13 +129,13 @@ struct Sample {
     is_inside: bool,
 }
 
-/// Distance between arrows on the plane through the middle of `bounds`.
+/// Distance between arrows on the plane through the center of `bounds`.
 fn spacing(bounds: Aabb, normal: DVec3) -> f64 {
     let (across, up) = normal.any_orthonormal_pair();
     [across, up].map(|axis| axis.abs().dot(bounds.size())).into_iter().fold(0.0, f64::max) / ARROWS
 }
 
-/// The field on a grid of the plane through the middle of its support, where it is not zero.
+/// Samples of the field, where it is nonzero, on a grid in the plane through the center of its support.
 fn section(field: &dyn Field, normal: DVec3, spacing: f64) -> Vec<Sample> {
     let bounds = field.bounds();
     let reach = (0.5 * bounds.size().length() / spacing).ceil() as i32;
@@ -162,14 +163,15 @@ fn core_speed(samples: &[Sample]) -> f64 {
     samples.iter().filter(|sample| sample.is_inside).map(|sample| sample.velocity.length()).fold(0.0, f64::max)
 }
 
-/// Middle of the tool in the section, and the mean direction of its motion there; none where it only turns or moves across.
+/// Center of the tool in the section and its mean direction of motion. `None` if the tool only rotates or moves along the
+/// normal.
 fn motion(samples: &[Sample], normal: DVec3) -> Option<(DVec3, DVec3)> {
-    let (mut middle, mut velocity, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+    let (mut center, mut velocity, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for sample in samples.iter().filter(|sample| sample.is_inside) {
-        middle += sample.point;
+        center += sample.point;
         velocity += sample.velocity.reject_from_normalized(normal);
         count += 1.0;
     }
     let count = f64::max(count, 1.0);
-    (velocity.length() > 0.1 * count * core_speed(samples)).then(|| (middle / count, velocity.normalize()))
+    (velocity.length() > 0.1 * count * core_speed(samples)).then(|| (center / count, velocity.normalize()))
 }

@@ -1,4 +1,4 @@
-//! The torus knot swept with the frames of four methods, colored by their error (figures 6.5 to 6.8 of Zheng's thesis).
+//! The torus knot, swept with frames of four methods and colored by their error (figures 6.5 to 6.8 of Zheng's thesis).
 
 use std::error::Error;
 
@@ -13,7 +13,7 @@ use isochore_picture::{Body, Camera, Options, Paint, Panel};
 
 const SEGMENTS: usize = 256;
 
-/// Errors at the two ends of the color scale, radians.
+/// Errors at the ends of the color scale, radians.
 const SCALE: (f64, f64) = (1e-8, 1e-1);
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -43,19 +43,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     save_figure("frame_errors", &bodies[0].1, &panels, &camera, &options)
 }
 
-/// The swept strap with a color a vertex, by the logarithm of the error.
+/// The swept strap with one color per vertex, by the logarithm of the error.
 fn colored(name: &str, spine: &Spine, frames: &[Frame], exact: &[Frame]) -> (String, TriMesh, Vec<DVec3>) {
     let errors: Vec<f64> = frames.iter().zip(exact).map(|(frame, exact)| exact.angle_to(frame.r).abs()).collect();
     let largest = errors.iter().copied().fold(0.0, f64::max);
     let stations: Stations = (0..).map(|station| spine.point(station)).zip(frames.iter().copied()).collect();
-    let profile = strap(0.16, 0.02);
-    let mesh = swept_body(&stations, &profile, false);
+    let mesh = swept_body(&stations, &strap(0.16, 0.02), false);
     let (low, high) = SCALE;
     let colors = errors
         .iter()
         .flat_map(|error| {
-            let share = libm::log(error.max(low) / low) / libm::log(high / low);
-            [scale_color(share); 4]
+            let fraction = libm::log(error.max(low) / low) / libm::log(high / low);
+            [scale_color(fraction); 4]
         })
         .collect();
     (format!("{name}\nlargest error {largest:.2e} rad"), mesh, colors)

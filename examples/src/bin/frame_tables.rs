@@ -1,5 +1,5 @@
-//! Tables III and IV of Wang et al. 2008 (6.2 and 6.3 of Zheng's thesis) measured again and printed beside the
-//! published figures, and what became of table V (6.4), whose printed data have no curve.
+//! Reproduces tables III and IV of Wang et al. 2008 (6.2 and 6.3 of Zheng's thesis) and prints the published values
+//! beside the measured ones. Table V (6.4) cannot be reproduced, because no curve exists for its printed data.
 
 #![expect(clippy::print_stdout, reason = "the tables are the result")]
 
@@ -11,7 +11,7 @@ use isochore_curve::{
     runge_kutta_frames, uniform_parameters,
 };
 
-/// Segments, then the published errors of double reflection, Runge–Kutta, projection and rotation.
+/// Number of segments and published errors of double reflection, Runge-Kutta, projection and rotation.
 const PUBLISHED: [(usize, [f64; 4]); 6] = [
     (64, [5.10e-3, 3.58e-2, 1.56e-1, 2.60e-1]),
     (128, [3.24e-4, 2.32e-3, 9.03e-2, 1.91e-1]),
@@ -23,12 +23,13 @@ const PUBLISHED: [(usize, [f64; 4]); 6] = [
 
 const METHODS: [&str; 4] = ["double reflection", "Runge-Kutta", "projection", "rotation"];
 
-/// What is known of the entries with a star.
+/// Explanation of the entries with a star.
 const REMARKS: &str = "\
 * differs from the published digits. Projection and rotation with 64 segments are misprinted: their published
-  ratios, 0.579 and 0.737, contradict second order. Runge-Kutta with 64 and 128 segments is 0.8 and 0.4 percent off,
-  of unknown cause; of rotation with 256 segments the largest error along the curve is published, 4.76E-2, where the
-  end has 4.7548E-2. All other entries agree, but that 7.955E-8 is published cut short, as 7.95E-8.";
+  ratios, 0.579 and 0.737, contradict second order. Runge-Kutta with 64 and 128 segments differs by 0.8 and 0.4
+  percent for an unknown reason. For rotation with 256 segments, the published 4.76E-2 is the largest error along
+  the curve; the error at the end is 4.7548E-2. All other entries agree; 7.955E-8 is published truncated, as
+  7.95E-8.";
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("Torus knot (16), one closed turn, reference vector (-1, 0, 0): angle error at the end\n");
@@ -53,8 +54,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     table_five()
 }
 
-/// A star where a measured error does not round to the published three digits, with half a unit of the last of them to
-/// spare for cutting instead of rounding.
+/// A star if a measured error does not round to the three published digits. The tolerance of half a unit in the last
+/// digit also accepts truncated values.
 fn mark(published: f64, measured: f64) -> char {
     let exponent = libm::floor(libm::log10(published));
     let unit = libm::pow(10.0, exponent - 2.0);
@@ -81,15 +82,15 @@ fn table_five() -> Result<(), Box<dyn Error>> {
     let (t0, t1) = (DVec3::new(1.0, 5.0, -1.0), DVec3::new(-3.0, 2.0, 5.0));
     println!("Table V: from {x0} to {x1} with tangents {t0} and {t1}");
     match PhCubic::hermite(x0, x1, t0, t1) {
-        Err(reason) => println!("  refused: {reason}"),
-        Ok(_) => return Err("the printed data have a cubic after all".into()),
+        Err(reason) => println!("  no cubic exists: {reason}"),
+        Ok(_) => return Err("the printed data unexpectedly have a cubic".into()),
     }
     for (t0, t1) in [
         (DVec3::new(1.0, 5.0, -1.0), DVec3::new(3.0, -2.0, 5.0)),
         (DVec3::new(1.0, 5.0, 1.0), DVec3::new(-3.0, -2.0, 5.0)),
     ] {
         let cubic = PhCubic::hermite(x0, x1, t0, t1)?;
-        println!("  in its place, tangents {t0} and {t1}:");
+        println!("  with tangents {t0} and {t1} instead:");
         println!("  segments  double reflection     ratio     rotation     ratio   projection     ratio");
         let normal = cubic.frenet_frame(0.0).r;
         let exact = cubic.exact_frames(&[cubic.domain().1], normal)?[0];

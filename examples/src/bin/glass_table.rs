@@ -1,5 +1,5 @@
-//! The frame of a glass table: a closed rod that touches the glass at three places and the ground at three, along a
-//! line each (figure 7.5 of Zheng's thesis).
+//! The frame of a glass table: a closed rod with three contact lines at the glass and three at the ground (figure 7.5 of
+//! Zheng's thesis).
 
 use std::{error::Error, f64::consts::TAU};
 
@@ -22,14 +22,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let spine = Spine::sample(&ring(), SEGMENTS)?;
     let frames =
         rotation_minimizing_frames(&spine, DVec3::Z, FrameMethod::DoubleReflection, Default::default())?.stations;
-    // Highest and lowest points in turn: the flat of the rod lies on the glass and on the ground.
+    // At the alternating highest and lowest points, the flat side of the rod touches the glass and the ground.
     let constraints: Vec<TwistConstraint> =
         (0..6).map(|i| TwistConstraint { station: i * SEGMENTS / 6, direction: DVec3::Z, turns: 0 }).collect();
     let twisted = meet_constraints(&spine, &frames, &constraints, TwistLaw::ArcLength)?;
-    let profile = strap(THICKNESS, 2.5 * THICKNESS);
+    let outline = strap(THICKNESS, 2.5 * THICKNESS);
     let body = |frames: &[isochore_curve::Frame]| {
         let stations: Stations = (0..).map(|station| spine.point(station)).zip(frames.iter().copied()).collect();
-        swept_body(&stations, &profile, true)
+        swept_body(&stations, &outline, true)
     };
     let tilt = |frames: &[isochore_curve::Frame]| {
         constraints.iter().map(|c| frames[c.station].angle_to(DVec3::Z).abs()).fold(0.0, f64::max)
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let bodies = [
         (
             format!(
-                "rotation-minimizing: up to {:.3} rad off at the six contacts,\nclosed to {} rad by symmetry",
+                "rotation-minimizing: error at most {:.3} rad at six contacts,\ngap {} rad by symmetry",
                 tilt(&frames),
                 small(closing_angle(&frames).abs())
             ),
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ),
         (
             format!(
-                "six conditions met: {} rad off at most,\nclosed to {} rad",
+                "six conditions: error at most {} rad,\ngap {} rad",
                 small(tilt(&twisted.stations)),
                 small(closing_angle(&twisted.stations).abs())
             ),
@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     save_figure("glass_table", &bodies[1].1, &panels, &camera, &options)
 }
 
-/// A ring that rises and falls three times, wider below.
+/// A ring that rises and falls three times and is wider at the bottom.
 fn ring() -> TrigonometricCurve {
     let term = |frequency, cosine, sine| TrigonometricTerm { frequency, cosine, sine };
     // (1 − 0.2 cos 3θ)(cos θ, sin θ), (HEIGHT/2) cos 3θ

@@ -1,5 +1,5 @@
-//! The cinquefoil and the trefoil knot, swept with closed rotation-minimizing frames and with Frenet frames (figures
-//! 7.2 and 7.3 of Zheng's thesis).
+//! The cinquefoil and the trefoil knot, swept with closed rotation-minimizing frames and with Frenet frames (figures 7.2
+//! and 7.3 of Zheng's thesis).
 
 use std::error::Error;
 
@@ -26,16 +26,16 @@ fn draw(name: &str, curve: &TrigonometricCurve, width: f64, view: DVec3) -> Resu
         rotation_minimizing_frames(&spine, frenet[0].r, FrameMethod::DoubleReflection, Default::default())?;
     let closed = close_frames(&spine, &minimizing.stations, TwistLaw::ArcLength, 0);
     let twist = closed.angles[SEGMENTS];
-    // The Frenet frame turns by the torsion wherever it goes, forward and back.
+    // The Frenet frame rotates by the torsion; both directions of rotation count.
     let turning = total_turning(&frenet);
     let bodies = [
         (
-            format!("{name}: closed rotation-minimizing frame\ntwist {twist:.4} rad in all, evenly"),
+            format!("{name}: closed rotation-minimizing frame\nuniform twist, {twist:.4} rad in total"),
             body(&spine, &closed.stations, width),
         ),
         (
             format!(
-                "{name}: Frenet frame, total torsion {:.4} rad\nturns by {:.2} rad, forward and back",
+                "{name}: Frenet frame, total torsion {:.4} rad\nabsolute rotation {:.2} rad",
                 total_torsion(curve),
                 turning
             ),
@@ -52,7 +52,7 @@ fn draw(name: &str, curve: &TrigonometricCurve, width: f64, view: DVec3) -> Resu
     save_figure(name, &bodies[0].1.0, &panels, &Camera::from_direction(view), &options)
 }
 
-/// A swept strap with two colors.
+/// A swept strap in two colors.
 fn body(spine: &Spine, frames: &[Frame], width: f64) -> (TriMesh, Vec<DVec3>) {
     let stations: Stations = (0..).map(|station| spine.point(station)).zip(frames.iter().copied()).collect();
     let mesh = swept_body(&stations, &strap(width, 0.3 * width), true);

@@ -1,5 +1,5 @@
-//! Rational curves of degree six with rational rotation-minimizing frames along example 1 of Bartoň et al. 2009, with
-//! the strips that their frames sweep (figure 3 there).
+//! Rational curves of degree six with rational rotation-minimizing frames, fitted to example 1 of Bartoň et al. 2009, and
+//! the strips that the frames sweep (figure 3 of the paper).
 
 use std::error::Error;
 
@@ -9,7 +9,7 @@ use isochore_examples::{save_figure, swept_body};
 use isochore_mesh::TriMesh;
 use isochore_picture::{Body, Camera, Options, Panel};
 
-/// Samples in each segment.
+/// Number of samples per segment.
 const SAMPLES: usize = 40;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -24,16 +24,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         let stations = spline.frames(normal, SAMPLES)?;
         let distance = stations.iter().map(|(point, _)| search.closest(*point).distance).fold(0.0, f64::max);
         let end = stations[stations.len() - 1].1.r.distance(exact.r);
-        // The strip of the paper: from the curve outward along r.
+        // As in the paper, the strip extends from the curve along r.
         let strip = [(0.2, 0.006), (0.0, 0.006), (0.0, -0.006), (0.2, -0.006)].map(|(r, s)| DVec2::new(r, s));
         strips.push((
-            format!("{segments} segments: distance {distance:.1e} at most\nframe {end:.1e} off at the end"),
+            format!("{segments} segments: distance at most {distance:.1e}\nerror of the last frame {end:.1e}"),
             swept_body(&stations, &strip, false),
         ));
     }
     let dashes: Vec<(DVec3, DVec3)> = (0..90)
         .map(|i| {
-            let at = |share: f64| curve.position(first + (last - first) * (f64::from(i) + share) / 90.0);
+            let at = |offset: f64| curve.position(first + (last - first) * (f64::from(i) + offset) / 90.0);
             (at(0.0), at(0.55))
         })
         .collect();

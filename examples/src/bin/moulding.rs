@@ -1,15 +1,15 @@
-//! Exact rational profile surfaces along a Pythagorean-hodograph cubic, a moulding and a ruled one, beside what the
-//! Frenet frame makes of them (figures 1 and 7 of Mäurer and Jüttler 1999).
+//! Exact rational sweeps along a Pythagorean-hodograph cubic: a moulding and a developable surface, beside the same
+//! sweeps with Frenet frames (figures 1 and 7 of Mäurer and Jüttler 1999).
 
 use std::error::Error;
 
 use glam::{DVec2, DVec3};
-use isochore_curve::{Curve, PhCubic, RationalPatch, RationalCrossSection, RationalRotation};
+use isochore_curve::{Curve, PhCubic, RationalCrossSection, RationalPatch, RationalRotation};
 use isochore_examples::{joined, save_figure};
 use isochore_mesh::{GridMesh, TriMesh};
 use isochore_picture::{Body, Camera, Options, Panel};
 
-/// Cells along the profile and along the spine.
+/// Number of cells along the cross-section and along the spine.
 const CELLS: (usize, usize) = (24, 120);
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -22,16 +22,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let curved = RationalCrossSection::polynomial(
         &[(-0.08, 0.016), (-0.04, 0.096), (0.04, 0.08), (0.096, -0.024)].map(|(x, y)| DVec2::new(2.5 * x, 2.5 * y)),
     );
-    // Beside the spine: through it, every frame would look orthogonal.
+    // Offset from the spine: through it, the parameter lines of every frame would be orthogonal.
     let line = RationalCrossSection::polynomial(&[DVec2::new(-0.25, 0.1), DVec2::new(0.25, 0.2)]);
     let minimizing = RationalRotation::symmetric(&cubic);
     let mut sheets: Vec<(String, TriMesh)> = Vec::new();
-    for (profile, is_line) in [(&curved, false), (&line, true)] {
+    for (cross_section, is_line) in [(&curved, false), (&line, true)] {
         for (name, rotation) in [("rational, rotation-minimizing", &minimizing), ("Frenet", &RationalRotation::FRENET)]
         {
-            let patch = RationalPatch::sweep(&cubic, rotation, profile, 0.0);
-            let judged = if is_line { curvature(&patch) } else { orthogonality(&patch) };
-            sheets.push((format!("{name}\n{judged}"), sheet(&patch)));
+            let patch = RationalPatch::sweep(&cubic, rotation, cross_section, 0.0);
+            let measured = if is_line { curvature(&patch) } else { orthogonality(&patch) };
+            sheets.push((format!("{name}\n{measured}"), sheet(&patch)));
         }
     }
     let spine: Vec<DVec3> = (0..=100).map(|i| cubic.position(f64::from(i) / 100.0)).collect();
@@ -54,7 +54,7 @@ fn cells() -> impl Iterator<Item = (f64, f64)> {
 
 fn orthogonality(patch: &RationalPatch) -> String {
     let largest = cells().map(|(u, v)| patch.jet(u, v).orthogonality().abs()).fold(0.0, f64::max);
-    format!("cosine of the parameter lines {largest:.1e} at most")
+    format!("cosine between parameter lines at most {largest:.1e}")
 }
 
 fn curvature(patch: &RationalPatch) -> String {

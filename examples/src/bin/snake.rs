@@ -1,4 +1,4 @@
-//! A snake modeled along a straight axis and bent along a spine, by rotation-minimizing frames and by Frenet frames
+//! A snake that is modeled along a straight axis and bent along a spine, with rotation-minimizing and with Frenet frames
 //! (figure 1.1 of Zheng's thesis).
 
 use std::error::Error;
@@ -31,21 +31,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     ]
     .map(|(x, y, z)| DVec3::new(x, y, z));
     let curve = CubicSpline::open(&points, Parametrization::Centripetal, EndCondition::Natural)?;
-    // Stations at equal lengths, where the straight snake has them.
+    // Stations at equal arc lengths, as on the straight snake.
     let length = ArcLength::new(&curve);
     let parameters: Vec<f64> =
         (0..=SEGMENTS).map(|i| length.parameter_at(length.total() * i as f64 / SEGMENTS as f64)).collect();
     let spine = Spine::from_jets(parameters.iter().map(|&u| curve.jet(u)), false)?;
     let minimizing =
         rotation_minimizing_frames(&spine, DVec3::Z, FrameMethod::DoubleReflection, Default::default())?.stations;
-    // A natural spline has no curvature at its very ends, and so no Frenet frame: take the neighbors'.
+    // A natural spline has zero curvature and no Frenet frame at its ends; the neighbors' frames are used.
     let mut inner = parameters.clone();
     inner[0] = parameters[1];
     inner[SEGMENTS] = parameters[SEGMENTS - 1];
     let frenet = frenet_frames(&curve, &inner)?;
     let bodies = [("rotation-minimizing", &minimizing), ("Frenet", &frenet)].map(|(name, frames)| {
         let turning = total_turning(frames);
-        (format!("{name}: turns about the spine by {turning:.4} rad in all"), snake(&spine, frames))
+        (format!("{name}: total rotation about the spine {turning:.4} rad"), snake(&spine, frames))
     });
     let panels: Vec<Panel> = bodies
         .iter()
@@ -58,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     save_figure("snake", &bodies[0].1.0, &panels, &camera, &options)
 }
 
-/// The snake: r is up at its back.
+/// The snake, with its back in the direction of r.
 fn snake(spine: &Spine, frames: &[Frame]) -> (TriMesh, Vec<DVec3>) {
     let stations: Stations = (0..).map(|station| spine.point(station)).zip(frames.iter().copied()).collect();
     let mesh = varying_body(&stations, COLUMNS, |row, column| {
@@ -76,13 +76,13 @@ fn angle(column: usize) -> f64 {
 }
 
 /// Half height and half width along the snake, from tail to head.
-fn size(share: f64) -> (f64, f64) {
-    let body = 0.21 * (share * (1.6 - share)).max(0.0).sqrt().min(0.72);
-    let past_neck = (share - 0.9) / 0.1;
+fn size(fraction: f64) -> (f64, f64) {
+    let body = 0.21 * (fraction * (1.6 - fraction)).max(0.0).sqrt().min(0.72);
+    let past_neck = (fraction - 0.9) / 0.1;
     if past_neck <= 0.0 {
         return (body.max(0.004), body.max(0.004));
     }
-    // The head widens, then rounds off.
+    // The head widens and ends round.
     let round = (1.0 - past_neck * past_neck).max(0.0).sqrt();
     let swell = libm::sin(std::f64::consts::PI * past_neck.min(1.0));
     ((body * round + 0.02 * swell).max(0.004), (body * round + 0.09 * swell).max(0.004))
