@@ -23,8 +23,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let distance = Arc::new(DistanceField::new(&pawn, &options, &NoProgress)?);
     let tool = Arc::new(Tool::new(distance, SUPPORT, Profile::Quintic)?);
 
-    // The pawn stands upright and sinks into the planet from above.
-    let keys = [2.3, 1.7].map(|height| Pose::at(DVec3::new(0.0, 0.0, height))).to_vec();
+    // The pawn is upright; its base sinks into the planet from above.
+    let keys = [1.45, 0.85].map(|height| Pose::at(DVec3::new(0.0, 0.0, height))).to_vec();
     let stroke = Stroke::Move(Move::new(tool, keys, 0.125)?);
 
     let deformed = deform(&planet, &[stroke], &DeformOptions::default(), &NoProgress)?;

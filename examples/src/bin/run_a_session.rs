@@ -14,7 +14,7 @@ use isochore_sculpt::{
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut session = Session::open(primitives::icosphere(1.0, 4), SessionOptions::default())?;
+    let mut session = Session::open(primitives::icosphere(1.0, 5), SessionOptions::default())?;
     let ball = recipe::Tool {
         shape: recipe::ToolShape::Sphere(recipe::Sphere { radius: 0.3 }),
         support: 0.25,
