@@ -65,11 +65,6 @@ impl Aabb {
         0.5 * (self.min + self.max)
     }
 
-    /// Whether the two boxes have a point in common.
-    pub fn touches(self, other: Self) -> bool {
-        self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
-    }
-
     /// Distance from `point` to the box, model units; zero inside.
     pub fn distance(self, point: DVec3) -> f64 {
         (self.min - point).max(point - self.max).max(DVec3::ZERO).length()

@@ -205,14 +205,7 @@ impl DistanceField {
     ) -> Result<Self, DistanceFieldError> {
         monitor.check("hierarchy", 0.0)?;
         let surface = checked_bounds(&mesh.positions, &mesh.triangles)?;
-        let grid = Grid::around(surface, options.resolution, options.padding)?;
-        if options.band.is_nan() || options.band <= 0.0 {
-            return Err(DistanceFieldError::Band { width: options.band });
-        }
-        let bytes = (grid.len() as u64).saturating_mul(BYTES_PER_NODE);
-        if bytes > options.memory_limit || grid.len() > u32::MAX as usize {
-            return Err(DistanceFieldError::Memory { dims: grid.dims, bytes, limit: options.memory_limit });
-        }
+        let grid = checked_grid(surface, options)?;
         let is_fine = grid.len() / NODES_PER_TRIANGLE > mesh.triangles.len();
         let clustering = if is_fine { Clustering::Fine } else { Clustering::Coarse };
         let (bvh, (open_edges, volume_and_centroid)) =
@@ -235,17 +228,10 @@ impl DistanceField {
         let (mut samples, sample_error) = sampling::unsigned(&search, &bvh, &grid, options.band, monitor)?;
         monitor.check("signs", 0.0)?;
         signs::negate_inside(&mut samples, mesh, &open_edges, &bvh, &grid, monitor)?;
-        // At the end of the band the distance has a kink, which the spline smooths like any other.
-        let band_reach = (options.band - KINK_CELLS * grid.cell).max(0.0);
-        let reach = match options.padding {
-            Padding::Reach(reach) => {
-                let reach = reach.min(band_reach);
-                check_border(&grid, &samples, reach)?;
-                reach
-            }
-            Padding::Length(length) => (length - 2.0 * grid.cell).max(0.0).min(band_reach),
-            Padding::Cells(cells) => (cells.saturating_sub(2) as f64 * grid.cell).min(band_reach),
-        };
+        let reach = reach(options, grid.cell);
+        if matches!(options.padding, Padding::Reach(_)) {
+            check_border(&grid, &samples, reach)?;
+        }
         let interpolant = Interpolant::new(&grid, &samples, monitor)?;
         Ok(Self { grid, samples, sample_error, interpolant, surface, centroid, reach, is_closed })
     }
@@ -304,6 +290,31 @@ impl Distance for DistanceField {
 
     fn detail(&self) -> f64 {
         self.grid.cell
+    }
+}
+
+/// Lays out the grid, and checks the options and the memory that the grid takes.
+fn checked_grid(surface: Aabb, options: &DistanceFieldOptions) -> Result<Grid, DistanceFieldError> {
+    let grid = Grid::around(surface, options.resolution, options.padding)?;
+    if options.band.is_nan() || options.band <= 0.0 {
+        return Err(DistanceFieldError::Band { width: options.band });
+    }
+    let bytes = (grid.len() as u64).saturating_mul(BYTES_PER_NODE);
+    if bytes > options.memory_limit || grid.len() > u32::MAX as usize {
+        return Err(DistanceFieldError::Memory { dims: grid.dims, bytes, limit: options.memory_limit });
+    }
+    Ok(grid)
+}
+
+/// Distance outside the surface up to which the field is reliable: limited by the padding, less the
+/// cells that the spline cannot cover, and by the band.
+fn reach(options: &DistanceFieldOptions, cell: f64) -> f64 {
+    // At the end of the band the distance has a kink, which the spline smooths like any other.
+    let band_reach = (options.band - KINK_CELLS * cell).max(0.0);
+    match options.padding {
+        Padding::Reach(reach) => reach.min(band_reach),
+        Padding::Length(length) => (length - 2.0 * cell).max(0.0).min(band_reach),
+        Padding::Cells(cells) => (cells.saturating_sub(2) as f64 * cell).min(band_reach),
     }
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn in_huge_pages<T>(mut vector: Vec<T>) -> Vec<T> {
 
 /// Requests huge pages for `length` bytes from `start` + `offset`.
 #[cfg(target_os = "linux")]
-#[expect(unsafe_code, reason = "the system's call takes an address")]
+#[expect(unsafe_code, reason = "the system call takes an address")]
 fn advise(start: *mut std::ffi::c_void, offset: usize, length: usize) {
     use rustix::mm::{Advice, madvise};
     // SAFETY: the range belongs to the vector, and this advice does not change memory. If the

@@ -28,9 +28,9 @@ pub(super) struct Interpolant {
 /// around the point.
 ///
 /// Rounding by u = 2⁻²⁴ moves the four weights along an axis by 17u in total. Each of three sums of
-/// products adds 5u or 4u; the first sum is over rounded differences. In total this is 3 · 17u + 5u
-/// + 4u + 4u, and a little for second-order terms. Smaller: points could be woken too late. Larger:
-/// they are woken needlessly early.
+/// products adds 5u or 4u; the first sum is over rounded differences. The total is
+/// `3 · 17u + 5u + 4u + 4u`, and a little for second-order terms. Smaller: points could be woken too
+/// late. Larger: they are woken needlessly early.
 const VALUE_ROUNDING: f64 = 65.0 / (1 << 24) as f64;
 
 impl Interpolant {
@@ -93,7 +93,7 @@ fn largest_difference(coefficients: &[f32], [nx, ny, _]: [usize; 3]) -> f32 {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-#[expect(unsafe_code, reason = "rows are loaded as the target allows")]
+#[expect(unsafe_code, reason = "rows are loaded by instructions of the target")]
 fn sample_single(lattice: &Lattice<'_>, points: &PointBlock, out: &mut DistanceBlock) {
     // SAFETY: the machine has the target's features.
     unsafe {
@@ -107,7 +107,7 @@ fn sample_single(lattice: &Lattice<'_>, points: &PointBlock, out: &mut DistanceB
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-#[expect(unsafe_code, reason = "rows are loaded as the target allows")]
+#[expect(unsafe_code, reason = "rows are loaded by instructions of the target")]
 fn sample_double(lattice: &Lattice<'_>, points: &PointBlock, out: &mut DistanceBlock) {
     // SAFETY: the machine has the target's features.
     unsafe {

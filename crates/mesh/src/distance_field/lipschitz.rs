@@ -33,7 +33,7 @@ const SLOPE_ROUNDING: f32 = 160.0 / (1 << 24) as f32;
 /// Cells of a row that are bounded at once.
 const LANES: usize = 16;
 
-/// Control values of `N` cells, [z][y][x].
+/// Control values of `N` cells, indexed by z, y and x.
 type Control<T, const N: usize> = [[[[T; N]; 4]; 4]; 4];
 
 /// Upper bound on the length of the gradient in all cells that have all neighbors and in which the

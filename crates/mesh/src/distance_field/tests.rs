@@ -219,7 +219,8 @@ proptest! {
         let point = dvec3(x, y, z);
         let (value, gradient) = field.sample(point);
         prop_assume!(value.is_finite());
-        // Central differences of a C² function: error STEP² times the third derivative, 10/cell² at kinks, plus rounding.
+        // Central differences of a C² function: the error is STEP² times the third derivative, which is
+        // 10/cell² at kinks, plus rounding.
         const STEP: f64 = 1e-5;
         for axis in 0..3 {
             let step = DVec3::AXES[axis] * STEP;

@@ -21,7 +21,7 @@ pub struct SurfaceHit {
 impl SurfaceTree {
     /// Calls `visit` with every triangle whose leaf touches `bounds`, in no particular order; some of them may not.
     pub fn visit_box(&self, bounds: Aabb, visit: impl FnMut(u32)) {
-        self.visit(|other| bounds.touches(other), visit);
+        self.visit(|other| bounds.overlaps(other), visit);
     }
 
     /// Calls `visit` with every triangle of the leaves whose box, and every box around it, `may_touch` what is looked for, in no

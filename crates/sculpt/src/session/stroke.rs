@@ -60,13 +60,13 @@ impl Segment {
 
     /// Whether the support may touch what has these bounds; false is certain.
     pub(super) fn may_touch(&self, bounds: Aabb) -> bool {
-        self.reach.touches(bounds) && self.stroke.may_touch(bounds.center(), 0.5 * bounds.size().length())
+        self.reach.overlaps(bounds) && self.stroke.may_touch(bounds.center(), 0.5 * bounds.size().length())
     }
 
     /// Whether it [may touch](Self::may_touch) anything within these bounds; false is certain.
     pub(super) fn may_touch_within(&self, bounds: Aabb) -> bool {
         let radius = 0.5 * NESTING * bounds.size().length();
-        self.reach.touches(bounds) && (radius < self.finest || self.stroke.may_touch(bounds.center(), radius))
+        self.reach.overlaps(bounds) && (radius < self.finest || self.stroke.may_touch(bounds.center(), radius))
     }
 }
 

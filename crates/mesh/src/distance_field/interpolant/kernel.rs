@@ -56,7 +56,7 @@ impl Lattice<'_> {
     /// # Safety
     /// The machine must have the features that `C` requires.
     #[inline(always)]
-    #[expect(unsafe_code, reason = "the rows are loaded without checks of their range")]
+    #[expect(unsafe_code, reason = "rows are loaded without range checks")]
     pub(super) unsafe fn sample<T: Real, C: Columns>(&self, points: &PointBlock, out: &mut DistanceBlock) {
         let [row, rows, layers] = self.geometry.dims.map(|nodes| nodes as usize);
         let layer = row * rows;
@@ -127,7 +127,7 @@ impl Lattice<'_> {
 
 impl<T: Real> Stencils<T> {
     #[inline(always)]
-    #[expect(unsafe_code, reason = "a cast without checks")]
+    #[expect(unsafe_code, reason = "an unchecked cast, because a checked one is not vectorized")]
     fn of(geometry: &GridGeometry, points: &PointBlock) -> Self {
         let mut stencils = Self { starts: [0; LANES], fraction: [[T::ZERO; LANES]; 3] };
         let mut stride = 1;

@@ -1,4 +1,4 @@
-#![expect(unsafe_code, reason = "the kernel is called as it is compiled for narrower machines")]
+#![expect(unsafe_code, reason = "calls of the kernels for narrower targets")]
 
 use glam::DVec3;
 
