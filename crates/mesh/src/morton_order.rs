@@ -1,5 +1,6 @@
-//! Triangles in the order of a space-filling curve, in which neighbors are close to each other (G.
-//! Morton, *A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing*, 1966).
+//! Triangles in the order of a space-filling curve, in which neighbors are close to each other.
+//!
+//! G. Morton, *A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing*, 1966.
 
 use rayon::prelude::*;
 use rdst::{RadixKey, RadixSort};
@@ -34,8 +35,8 @@ impl RadixKey for MortonKey {
 pub(crate) fn along_morton_curve(points: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<MortonKey> {
     let mut keys: Vec<MortonKey> =
         (0..triangles.len() as u32).into_par_iter().map(|triangle| MortonKey { cell: 0, triangle }).collect();
-    // Use sums of three corners instead of centroids. They are within three times the bounds of all
-    // points, which are faster to compute than the bounds of the sums.
+    // Use sums of three corners instead of centroids. The sums are within three times the bounds of
+    // the points, which are computed faster than the bounds of the sums.
     let (min, max) = bounds(points.par_iter().copied());
     sort(&mut keys, [min, max].map(|corner| corner.map(|coordinate| 3.0 * coordinate)), &|triangle: u32| {
         let [a, b, c] = triangles[triangle as usize];

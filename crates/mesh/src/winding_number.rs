@@ -104,8 +104,8 @@ impl WindingNumber {
     /// Whether the absolute winding number is certainly below one half at all points within `reach`
     /// of `center`.
     ///
-    /// In any position, a triangle covers at most its area over its squared distance of the unit
-    /// sphere.
+    /// The solid angle of a triangle is at most its area over its squared distance, in any
+    /// orientation.
     pub(crate) fn is_below_half(&self, center: DVec3, reach: f64) -> bool {
         let (center, reach) = (self.bvh.frame().to_unit(center), reach * self.bvh.frame().scale());
         let gap_to = |middle: DVec3, radius: f64| (middle - center).length() - radius - reach;
@@ -214,8 +214,8 @@ impl Cluster {
         })
     }
 
-    /// Solid angle seen from `offset` before the center, with a bound on its error. It is the
-    /// expansion of the kernel K(r) = r/|r|³ to first order.
+    /// Solid angle of a cluster whose center is at `offset` from the viewpoint, with a bound on its
+    /// error. It is the expansion of the kernel K(r) = r/|r|³ to first order.
     ///
     /// K is minus the gradient of 1/|r|. The j-th derivative of 1/|r| along any unit vectors is at
     /// most j!/|r|^(j+1). So the j-th term of the expansion is at most (j+1) ρʲ/|r|^(j+2) per unit

@@ -26,7 +26,10 @@ pub(super) struct PackedBox {
     contents: u32,
 }
 
-const _: () = assert!(LEAF_TRIANGLES < 8 && size_of::<PackedBox>() == 64, "the count has three bits, and a box fills a cache line");
+const _: () = assert!(
+    LEAF_TRIANGLES < 8 && size_of::<PackedBox>() == 64,
+    "the count has three bits, and a box fills a cache line"
+);
 
 impl PackedBox {
     /// The first of the two children; `None` for a leaf.
