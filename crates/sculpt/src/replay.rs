@@ -40,7 +40,7 @@ pub enum ReplayError {
         /// Index of the stroke.
         index: usize,
         /// The cause.
-        source: field::StampError,
+        source: field::PressError,
     },
     /// The target cannot be deformed.
     #[error("target: {0}")]

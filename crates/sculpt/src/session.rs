@@ -158,7 +158,7 @@ impl Session {
     /// [`SessionError`]; the tool is then still at the last pose, and the stroke goes on from there.
     pub fn move_to(&mut self, pose: &field::Pose, time: f64) -> Result<MoveReceipt, SessionError> {
         if !(pose.translation.is_finite() && pose.rotation.is_finite()) {
-            return Err(field::StrokeError::NotFinite("the poses of the path").into());
+            return Err(field::StrokeError::Move(field::MoveError::NotFinite).into());
         }
         // What the log will say, so that replaying it gives the same bits.
         self.move_to_key(log::key(pose), time)
@@ -191,7 +191,7 @@ impl Session {
     }
 
     /// The way of a tool between two poses.
-    fn segment(&self, tool: &SessionTool, poses: [field::Pose; 2]) -> Result<Segment, SessionError> {
+    fn segment(&self, tool: &SessionTool, poses: [field::Pose; 2]) -> Result<Segment, field::StrokeError> {
         let way = field::Move::new(Arc::clone(tool.tool()), poses.to_vec(), self.options.step)?;
         let mut stroke = field::Stroke::Move(way);
         if let Some(mask) = &self.mask {

@@ -1,9 +1,15 @@
+mod masked;
+
 use std::{f64::consts::FRAC_PI_2, sync::Arc};
 
+use glam::DVec3;
 use isochore_mesh::{Capsule, NoProgress, SelfIntersections, Sphere, primitives};
 
 use super::*;
-use crate::{Move, Pose, Profile, Tool, Twist, rotation_from_vector};
+use crate::{
+    fields::{Pose, Profile, Tool, rotation_from_vector},
+    flow::{Move, Twist},
+};
 
 /// Refined, but not locked.
 const REFINED: DeformOptions = DeformOptions {
@@ -209,7 +215,7 @@ fn points_alone_flow_as_the_vertices_do() {
     let sphere = primitives::icosphere(1.0, 3);
     let strokes = [press(0.125)];
     let deformed = run(&sphere, &strokes, &REFINED);
-    let points = crate::advect_points(&sphere.positions, &strokes, &NoProgress).unwrap();
+    let points = crate::flow::advect_points(&sphere.positions, &strokes, &NoProgress).unwrap();
     assert_eq!(points, deformed.mesh.positions[..points.len()]);
 }
 

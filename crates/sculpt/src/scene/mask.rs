@@ -19,7 +19,7 @@ pub(super) fn masked(
     let mask = Arc::new(mask(&recipe.mask, target)?);
     let masked = |(index, stroke): (usize, &field::Stroke)| {
         let stroke = stroke.masked(&mask, bounds, recipe.integrate.step);
-        stroke.map_err(|source| SceneError::Stroke { index, source })
+        stroke.map_err(|source| SceneError::Stroke { index, source: source.into() })
     };
     strokes.iter().enumerate().map(masked).collect()
 }

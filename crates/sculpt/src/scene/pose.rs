@@ -26,7 +26,7 @@ pub(super) fn stroke(
     });
     let jointed = Arc::new(field::JointedTool::new(bones.collect())?);
     let postures: Vec<_> = pose.keys.iter().map(|key| posture(pose, key)).collect();
-    Ok(field::FieldStroke::new(jointed.motions(&postures)?, step).map(field::Stroke::Field))
+    Ok(field::FieldStroke::new(jointed.motions(&postures)?, step).map(field::Stroke::Field).map_err(Into::into))
 }
 
 fn posture(pose: &Pose, key: &BTreeMap<String, BoneKey>) -> field::Posture {

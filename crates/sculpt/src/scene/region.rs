@@ -29,7 +29,7 @@ pub(super) fn stroke(
         },
         (shift, None) => field::RegionMotion::Translation(shift.map_or(DVec3::ZERO, DVec3::from_array)),
     };
-    Ok(moving.stroke(motion, step, reference).map(field::Stroke::Move))
+    Ok(moving.stroke(motion, step, reference).map(field::Stroke::Move).map_err(Into::into))
 }
 
 /// The distance to an inner region in coordinates of its own, and the world from these.

@@ -21,20 +21,25 @@ pub(super) struct StrokeBuilder<'a> {
 impl StrokeBuilder<'_> {
     pub(super) fn build(&self, index: usize, stroke: &Stroke) -> Result<field::Stroke, SceneError> {
         let stroke = match stroke {
-            Stroke::Move(motion) => {
-                field::Move::new(self.tool(&motion.tool), poses(&motion.keys)?, self.step).map(field::Stroke::Move)
-            }
+            Stroke::Move(motion) => field::Move::new(self.tool(&motion.tool), poses(&motion.keys)?, self.step)
+                .map(field::Stroke::Move)
+                .map_err(field::StrokeError::from),
             Stroke::Twist(twist) => {
                 let [origin, axis] = [twist.origin, twist.axis].map(DVec3::from_array);
-                field::Twist::new(origin, axis, twist.degrees_per_unit.to_radians()).map(field::Stroke::Twist)
+                field::Twist::new(origin, axis, twist.degrees_per_unit.to_radians())
+                    .map(field::Stroke::Twist)
+                    .map_err(field::StrokeError::from)
             }
             Stroke::Bend(bend) => {
                 let [origin, axis] = [bend.origin, bend.axis].map(DVec3::from_array);
-                field::Bend::new(origin, axis, bend.degrees_per_unit2.to_radians()).map(field::Stroke::Bend)
+                field::Bend::new(origin, axis, bend.degrees_per_unit2.to_radians())
+                    .map(field::Stroke::Bend)
+                    .map_err(field::StrokeError::from)
             }
             Stroke::Stamp(stamp) => {
                 field::Stamp::new(self.tool(&stamp.tool), poses(&stamp.keys)?, self.step, stamp.relief)
                     .map(field::Stroke::Stamp)
+                    .map_err(field::StrokeError::from)
             }
             Stroke::Strip(strip) => strip::strip(strip, self.tools)
                 .map_err(field::StrokeError::from)
@@ -56,7 +61,7 @@ impl StrokeBuilder<'_> {
     }
 
     fn field_stroke(&self, field: impl field::MovingField + 'static) -> Result<field::Stroke, field::StrokeError> {
-        field::FieldStroke::new(vec![Arc::new(field)], self.step).map(field::Stroke::Field)
+        Ok(field::Stroke::Field(field::FieldStroke::new(vec![Arc::new(field)], self.step)?))
     }
 }
 

@@ -1,0 +1,104 @@
+//! The midpoints of edges of the base, followed through the flow.
+
+use glam::DVec3;
+use isochore_mesh::{Aabb, Cancelled, Monitor};
+
+use super::{Tessellation, blocks::Blocks, middle};
+use crate::{
+    deform::curved_triangle::CurvedTriangle,
+    flow::{Stroke, advection::advect},
+};
+
+/// The edge's midpoint is not followed.
+pub(super) const UNFOLLOWED: u32 = u32::MAX;
+
+/// Midpoints of edges of the base, and their images.
+#[derive(Debug, Clone)]
+pub(super) struct Midpoints {
+    /// By half-edge; all along an edge agree.
+    pub(super) of_half_edge: Vec<u32>,
+    pub(super) base: Vec<DVec3>,
+    pub(super) image: Vec<DVec3>,
+    /// Boxes around the images of each block of them.
+    pub(super) bounds: Blocks<Aabb>,
+    /// Half-edges at those whose image is not known yet.
+    pending: Vec<u32>,
+    /// Numbers that can be given again.
+    pub(super) unused: Vec<u32>,
+}
+
+impl Midpoints {
+    /// None is followed at these half-edges.
+    pub(super) fn none(of_half_edge: Vec<u32>) -> Self {
+        Self {
+            of_half_edge,
+            base: Vec::new(),
+            image: Vec::new(),
+            bounds: Blocks::NONE,
+            pending: Vec::new(),
+            unused: Vec::new(),
+        }
+    }
+}
+
+impl Tessellation {
+    /// From now on follows the midpoint of the edge of a half-edge, and returns its number. Its image is not known until the
+    /// next [`advect_followed`](Self::advect_followed).
+    pub(super) fn follow(&mut self, half_edge: u32) -> u32 {
+        let known = self.midpoints.of_half_edge[half_edge as usize];
+        if known != UNFOLLOWED {
+            return known;
+        }
+        let middle = middle(self.ends(half_edge), &self.base);
+        let midpoints = &mut self.midpoints;
+        let number = midpoints.unused.pop().unwrap_or_else(|| {
+            midpoints.base.push(DVec3::ZERO);
+            midpoints.image.push(DVec3::ZERO);
+            midpoints.base.len() as u32 - 1
+        });
+        midpoints.bounds.forget(number as usize);
+        midpoints.base[number as usize] = middle;
+        midpoints.image[number as usize] = middle;
+        midpoints.pending.push(half_edge);
+        self.edges.around(half_edge).for_each(|half_edge| midpoints.of_half_edge[half_edge as usize] = number);
+        number
+    }
+
+    /// From now on follows the midpoints of a triangle's edges.
+    pub(crate) fn follow_edges_of(&mut self, triangle: u32) {
+        (0..3).for_each(|side| _ = self.follow(3 * triangle + side));
+    }
+
+    /// Carries the midpoints that are newly followed through the `strokes` since the base, which has changed the triangles at
+    /// those that move. Returns the evaluations of the fields.
+    pub(crate) fn advect_followed(&mut self, strokes: &[Stroke], monitor: &dyn Monitor) -> Result<u64, Cancelled> {
+        let midpoints = &mut self.midpoints;
+        let pending = std::mem::take(&mut midpoints.pending);
+        let number = |half_edge: u32| midpoints.of_half_edge[half_edge as usize] as usize;
+        let mut points: Vec<DVec3> = pending.iter().map(|&half_edge| midpoints.base[number(half_edge)]).collect();
+        let evaluations = advect(&mut points, strokes, monitor)?;
+        let mut changed = Vec::new();
+        for (&half_edge, point) in pending.iter().zip(points) {
+            let number = midpoints.of_half_edge[half_edge as usize] as usize;
+            midpoints.image[number] = point;
+            if point != midpoints.base[number] {
+                changed.extend(self.edges.around(half_edge).map(|half_edge| half_edge / 3));
+            }
+        }
+        self.report_changed(&changed);
+        Ok(evaluations)
+    }
+
+    /// The triangle's image with its midpoints, if all are followed.
+    pub(crate) fn curved(&self, triangle: usize) -> Option<CurvedTriangle> {
+        let midpoints = self.midpoints_of(triangle);
+        let image = |midpoint: u32| self.midpoints.image[midpoint as usize];
+        (!midpoints.contains(&UNFOLLOWED))
+            .then(|| CurvedTriangle { corners: self.image_of(triangle), midpoints: midpoints.map(image) })
+    }
+
+    /// The midpoints of a triangle's edges 01, 12 and 20.
+    pub(super) fn midpoints_of(&self, triangle: usize) -> [u32; 3] {
+        std::array::from_fn(|side| self.midpoints.of_half_edge[3 * triangle + side])
+    }
+}

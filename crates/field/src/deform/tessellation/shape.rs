@@ -1,0 +1,56 @@
+//! Boxes and volumes of blocks of triangles.
+
+use std::ops::Range;
+
+use isochore_mesh::{Aabb, VolumeFrame};
+
+use super::{Tessellation, blocks::Blocks, midpoints::UNFOLLOWED, sum};
+use crate::flow::advection::CHUNK;
+
+/// Images of a block of triangles.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shape {
+    /// Box around the corners and the midpoints that are followed.
+    bounds: Aabb,
+    /// Six times the volume between them and the center of the frame.
+    six_volumes: f64,
+}
+
+impl Tessellation {
+    /// The triangles in blocks whose images, or those of their midpoints, reach into a box; in ascending order.
+    pub(crate) fn triangles_in(&mut self, bounds: Aabb) -> Vec<u32> {
+        let count = self.triangles.len();
+        let blocks = self.know_shapes().enumerate().filter(|(_, shape)| shape.bounds.overlaps(bounds));
+        let triangles = |block: usize| (block * CHUNK) as u32..count.min((block + 1) * CHUNK) as u32;
+        blocks.flat_map(|(block, _)| triangles(block)).collect()
+    }
+
+    /// Signed volume inside the images of the triangles.
+    pub(crate) fn image_volume(&mut self) -> f64 {
+        let bounds = self.know_shapes().fold(Aabb::EMPTY, |bounds, shape| bounds.union(shape.bounds));
+        // Far from where it was the sum would lose digits.
+        if !self.frame.is_centered_in(bounds) {
+            self.frame = VolumeFrame::of(&self.image);
+            self.shapes.forget_all();
+        }
+        let six_volumes = sum(self.know_shapes().map(|shape| shape.six_volumes));
+        self.frame.volume(six_volumes)
+    }
+
+    fn know_shapes(&mut self) -> impl Iterator<Item = Shape> {
+        let mut shapes = std::mem::replace(&mut self.shapes, Blocks::NONE);
+        let learn = |triangles: Range<usize>| {
+            let midpoints = triangles.clone().flat_map(|index| self.midpoints_of(index));
+            let midpoints = midpoints.filter(|&midpoint| midpoint != UNFOLLOWED);
+            let midpoints = midpoints.map(|midpoint| self.midpoints.image[midpoint as usize]);
+            let corners = triangles.clone().flat_map(|index| self.image_of(index));
+            Shape {
+                bounds: Aabb::of(corners.chain(midpoints)),
+                six_volumes: sum(triangles.map(|index| self.frame.six_volumes(self.image_of(index)))),
+            }
+        };
+        shapes.know(self.triangles.len(), learn);
+        self.shapes = shapes;
+        self.shapes.iter()
+    }
+}

@@ -1,0 +1,140 @@
+//! Splitting: a triangle's parts take its place.
+
+use glam::DVec3;
+use isochore_mesh::{TriangleSide, TriangleSplit};
+use rustc_hash::FxHashMap;
+
+use super::{ChosenEdges, Part, Tessellation, WHOLE, middle, midpoints::UNFOLLOWED};
+
+/// A corner of a triangle that is being split.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    vertex: u32,
+    /// Barycentric coordinates in the triangle of the mesh as read.
+    weights: DVec3,
+    image: DVec3,
+}
+
+/// A side of a triangle that is being split.
+#[derive(Debug, Clone, Copy)]
+enum Side {
+    /// One that it had, by its half-edge.
+    Whole(u32),
+    /// A half of one, or one inside.
+    New,
+}
+
+impl TriangleSide for Side {
+    fn first(self) -> Self {
+        Self::New
+    }
+
+    fn second(self) -> Self {
+        Self::New
+    }
+
+    fn reversed(self) -> Self {
+        self
+    }
+}
+
+impl Tessellation {
+    /// Splits the chosen edges, and every triangle at them: into two, three or four by the number of its chosen edges, so that
+    /// both sides of an edge agree. Returns the triangles that are there now in place of those, in ascending order.
+    pub(crate) fn split(&mut self, chosen: &ChosenEdges) -> Vec<u32> {
+        let known = self.rest.len() as u32;
+        let mut split = Vec::with_capacity(2 * chosen.half_edges().len());
+        for &half_edge in chosen.half_edges() {
+            let midpoint = self.midpoints.of_half_edge[half_edge as usize];
+            self.rest.push(middle(self.ends(half_edge), &self.rest));
+            self.base.push(self.midpoints.base[midpoint as usize]);
+            self.image.push(self.midpoints.image[midpoint as usize]);
+            self.midpoints.unused.push(midpoint);
+            self.vertex_bounds.forget(self.rest.len() - 1);
+            split.extend(self.edges.around(half_edge).map(|half_edge| half_edge / 3));
+        }
+        split.sort_unstable();
+        split.dedup();
+        let first_new = self.triangles.len() as u32;
+        // By its ends, a half-edge on every edge that is made.
+        let mut made = FxHashMap::default();
+        for &triangle in &split {
+            let inserted = self.midpoints_of(triangle as usize).map(|midpoint| Some(known + chosen.place(midpoint)?));
+            self.split_triangle(triangle, inserted, &mut made);
+        }
+        split.extend(first_new..self.triangles.len() as u32);
+        self.report_changed(&split);
+        split
+    }
+
+    /// Puts the parts of a triangle, whose edges 01, 12 and 20 have got the vertices `inserted`, in its place.
+    fn split_triangle(&mut self, triangle: u32, inserted: [Option<u32>; 3], made: &mut FxHashMap<[u32; 2], u32>) {
+        let Part { parent, corners: weights } = self.part(triangle as usize);
+        let vertices = self.triangles[triangle as usize];
+        let corner = |vertex: u32, weights| Corner { vertex, weights, image: self.image[vertex as usize] };
+        let middle = |side: usize| Some(corner(inserted[side]?, 0.5 * (weights[side] + weights[(side + 1) % 3])));
+        let whole = [0, 1, 2].map(|side| 3 * triangle + side);
+        let split = TriangleSplit {
+            corners: [0, 1, 2].map(|index| corner(vertices[index], weights[index])),
+            sides: whole.map(Side::Whole),
+            middles: [0, 1, 2].map(middle),
+        };
+        let mut parts: Vec<([Corner; 3], [Side; 3])> = Vec::with_capacity(4);
+        let distance_squared = |a: &Corner, b: &Corner| a.image.distance_squared(b.image);
+        let is_done =
+            split.parts(distance_squared, |_, _| Some(Side::New), |corners, sides| parts.push((corners, sides)));
+        debug_assert!(is_done.is_some(), "every inner side was given");
+
+        // The first part takes the triangle's number, so the old half-edges make room: they go behind all others meanwhile.
+        let midpoints = whole.map(|half_edge| self.midpoints.of_half_edge[half_edge as usize]);
+        let count = self.triangles.len() + parts.len() - 1;
+        self.edges.resize(count + 1);
+        let aside = |half_edge: u32| 3 * count as u32 + half_edge % 3;
+        for half_edge in whole {
+            match inserted[half_edge as usize % 3] {
+                None => self.edges.replace(half_edge, aside(half_edge)),
+                Some(_) => self.edges.part(half_edge),
+            }
+        }
+        for (index, (corners, sides)) in parts.into_iter().enumerate() {
+            let at = if index == 0 { triangle } else { self.push_triangle() };
+            self.triangles[at as usize] = corners.map(|corner| corner.vertex);
+            self.set_part(at as usize, Part { parent, corners: corners.map(|corner| corner.weights) });
+            for (half_edge, side) in (3 * at..).zip(sides) {
+                match side {
+                    Side::Whole(old) => {
+                        self.midpoints.of_half_edge[half_edge as usize] = midpoints[old as usize % 3];
+                        self.edges.replace(aside(old), half_edge);
+                    }
+                    Side::New => {
+                        self.midpoints.of_half_edge[half_edge as usize] = UNFOLLOWED;
+                        let [a, b] = self.ends(half_edge);
+                        let other = *made.entry([a.min(b), a.max(b)]).or_insert(half_edge);
+                        if other != half_edge {
+                            self.edges.join(half_edge, other);
+                        }
+                    }
+                }
+            }
+        }
+        self.edges.resize(count);
+    }
+
+    /// A new triangle, which has nothing yet but its half-edges; returns its number.
+    fn push_triangle(&mut self) -> u32 {
+        self.triangles.push([0; 3]);
+        self.part_of.push(WHOLE);
+        self.midpoints.of_half_edge.extend([UNFOLLOWED; 3]);
+        self.gains.push(0.0);
+        self.triangles.len() as u32 - 1
+    }
+
+    fn set_part(&mut self, triangle: usize, part: Part) {
+        if self.part_of[triangle] == WHOLE {
+            self.part_of[triangle] = self.parts.len() as u32;
+            self.parts.push(part);
+        } else {
+            self.parts[self.part_of[triangle] as usize] = part;
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Rigid motions about a center, and the vector potentials of their velocities.
+
+mod rigid_gauge;
+
+use glam::DVec3;
+
+pub(crate) use rigid_gauge::RigidGauge;
+
+/// A rigid motion: `linear` is the velocity of `center`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RigidMotion {
+    pub(crate) center: DVec3,
+    pub(crate) linear: DVec3,
+    pub(crate) angular: DVec3,
+}
+
+impl RigidMotion {
+    /// The vector potential A = ½ v×r + ⅓ (ω×r)×r at `point`, and its curl v + ω×r.
+    #[inline(always)]
+    pub(crate) fn potential(&self, point: DVec3) -> (DVec3, DVec3) {
+        let r = point - self.center;
+        let turn = self.angular.cross(r);
+        ((0.5 * self.linear + turn * (1.0 / 3.0)).cross(r), self.linear + turn)
+    }
+
+    /// The same motion, described about another center.
+    pub(crate) fn about(&self, center: DVec3) -> Self {
+        Self { center, linear: self.velocity(center), angular: self.angular }
+    }
+
+    /// The velocity of `point`, v + ω×r.
+    pub(crate) fn velocity(&self, point: DVec3) -> DVec3 {
+        self.linear + self.angular.cross(point - self.center)
+    }
+}

@@ -1,0 +1,112 @@
+//! The one kernel: the divergence-free field of a rigidly moving tool.
+//!
+//! ```text
+//! V = curl(g(d/R) A) = g (v + ω×r) + (g′/R) n × A,   A = ½ v×r + ⅓ (ω×r)×r
+//! ```
+//!
+//! d is the signed distance, n its gradient, R the support, g the profile, v the velocity of the tool's center, ω its angular
+//! velocity and r the position relative to the center. Where g is one the field is the tool's rigid motion; beyond the support
+//! it is zero; and being a curl it is divergence-free in between, whatever the shape. Only d and n are needed, and n must be
+//! the gradient of the very function that gives d: with any other gradient the field is no curl.
+//!
+//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, equations 12.2 (ω = 0) and 12.3 (v = 0), with the
+//! factors −1/(2R²) and −1/(3R²) that make the tool's own speed that of its surface.
+
+use glam::DVec3;
+use isochore_mesh::{DistanceBlock, LANES, PointBlock};
+use multiversion::multiversion;
+
+use super::{Tool, gauge::Cubic};
+use crate::fields::{BodyTwist, field::curl_of_product, rigid_motion::RigidMotion};
+
+/// The field of a tool that moves with a twist, in tool coordinates, where it does not change with time.
+#[derive(Debug, Clone, Copy)]
+pub struct RigidField<'a> {
+    tool: &'a Tool,
+    twist: BodyTwist,
+    /// About the tool's center.
+    motion: RigidMotion,
+    /// What is added to the potential.
+    gauge: Option<Cubic>,
+}
+
+/// The field at the points of a block.
+#[derive(Debug, Clone, Copy)]
+pub struct VelocityBlock {
+    /// Velocity past the tool, V − (v + ω×y), in tool axes: what a point's tool coordinates change by.
+    pub relative: PointBlock,
+    /// Signed distance from the tool.
+    pub distance: [f64; LANES],
+    /// Whether the point is beyond the support, where the field is exactly zero.
+    pub is_outside: [bool; LANES],
+}
+
+impl VelocityBlock {
+    pub(crate) const REST: Self =
+        Self { relative: PointBlock::ZERO, distance: [f64::INFINITY; LANES], is_outside: [true; LANES] };
+}
+
+impl<'a> RigidField<'a> {
+    /// The field of `tool` as it moves with `twist`.
+    pub fn new(tool: &'a Tool, twist: BodyTwist) -> Self {
+        let center = tool.center();
+        let motion = RigidMotion { center, linear: twist.velocity(center), angular: twist.angular };
+        Self { tool, twist, motion, gauge: tool.gauge().map(|gauge| gauge.of(&motion)) }
+    }
+
+    /// The tool that moves.
+    pub fn tool(&self) -> &'a Tool {
+        self.tool
+    }
+
+    /// The field at `points`, given in tool coordinates.
+    ///
+    /// In the rigid core the relative velocity is exactly zero.
+    pub fn evaluate_into(&self, points: &PointBlock, out: &mut VelocityBlock) {
+        let mut distance = DistanceBlock::FAR;
+        self.tool.distance().sample_single_into(points, &mut distance);
+        relative_velocity(self.tool, &self.motion, points, &distance, out);
+        if let Some(gauge) = &self.gauge {
+            let (support, profile) = (self.tool.support(), self.tool.profile());
+            let profile = profile.evaluate_block(&distance.value, support);
+            for lane in 0..LANES {
+                let gradient = profile.slope[lane] / support * distance.gradient.get(lane);
+                let added = gradient.cross(gauge.gradient(points.get(lane) - self.motion.center));
+                out.relative.set(lane, out.relative.get(lane) + added);
+            }
+        }
+    }
+
+    /// The velocity V at one point, in tool coordinates and tool axes.
+    pub fn velocity(&self, point: DVec3) -> DVec3 {
+        let mut block = VelocityBlock::REST;
+        self.evaluate_into(&PointBlock::splat(point), &mut block);
+        if block.is_outside[0] { DVec3::ZERO } else { block.relative.get(0) + self.twist.velocity(point) }
+    }
+}
+
+/// The field without a gauge, from the distances at `points`.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn relative_velocity(
+    tool: &Tool,
+    motion: &RigidMotion,
+    points: &PointBlock,
+    distance: &DistanceBlock,
+    out: &mut VelocityBlock,
+) {
+    let (support, inverse) = (tool.support(), 1.0 / tool.support());
+    let profile = tool.profile().evaluate_block(&distance.value, support);
+    for lane in 0..LANES {
+        let (potential, curl) = motion.potential(points.get(lane));
+        let gradient = profile.slope[lane] * inverse * distance.gradient.get(lane);
+        // V − (v + ω×r) = (g − 1)(v + ω×r) + (g′/R) n × A
+        out.relative.set(lane, curl_of_product(profile.value[lane] - 1.0, gradient, potential, curl));
+    }
+    out.distance = distance.value;
+    for lane in 0..LANES {
+        out.is_outside[lane] = profile.value[lane] == 0.0 && profile.slope[lane] == 0.0;
+    }
+}
+
+#[cfg(test)]
+mod tests;
