@@ -1,4 +1,4 @@
-/* Presses a ball into a block of clay and writes what comes of it: press [FILE]. */
+/* Presses a ball into a block of clay and writes the result to FILE, if given. Usage: press [FILE] */
 
 #include <isochore.h>
 #include <stdbool.h>
@@ -16,7 +16,7 @@ static const char *const RECIPE =
     "tool = 'ball'\n"
     "keys = [ { at = [0, 0, 1.2] }, { at = [0, 0, 0.6] } ]\n";
 
-static bool tell(const char *stage, double done, void *context) {
+static bool show_progress(const char *stage, double done, void *context) {
     (void)context;
     fprintf(stderr, "%s %.0f %%\n", stage, 100 * done);
     return true;
@@ -27,7 +27,7 @@ int main(int count, char **arguments) {
     char *report = NULL;
     double volume = 0;
 
-    IsochoreStatus status = isochore_run(RECIPE, NULL, 0, tell, NULL, &pressed, &report);
+    IsochoreStatus status = isochore_run(RECIPE, NULL, 0, show_progress, NULL, &pressed, &report);
     if (status == ISOCHORE_STATUS_OK) {
         status = isochore_mesh_volume(pressed, &volume);
     }

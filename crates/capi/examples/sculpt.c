@@ -1,4 +1,4 @@
-/* A stroke of a session, as a host with a window would make it: sculpt [FILE]. */
+/* Makes one stroke in a session, as an interactive host would, and writes the result to FILE, if given. Usage: sculpt [FILE] */
 
 #include <isochore.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@ static void check(IsochoreStatus status) {
     }
 }
 
-/* What a renderer would do: copy the rows that have changed. */
+/* Copies the changed rows of the position buffer, as a renderer would, and returns their number. */
 static size_t upload(IsochoreSession *session, float **copy) {
     IsochoreBuffers buffers;
     const IsochoreRange *ranges;
@@ -46,7 +46,7 @@ int main(int count, char **arguments) {
     check(isochore_tool_new("brush", "{\"shape\": {\"kind\": \"sphere\", \"radius\": 0.2}, \"support\": 0.3}", NULL, 0, NULL, NULL,
                             &brush));
     check(isochore_session_new(clay, NULL, &session));
-    printf("%zu rows to begin with\n", upload(session, &copy));
+    printf("initial upload: %zu rows\n", upload(session, &copy));
 
     check(isochore_session_begin_stroke(session, brush, NULL));
     for (int step = 0; step < 6; step++) {

@@ -12,29 +12,31 @@ use isochore_mesh::{
 };
 use isochore_sculpt::{BuildToolError, ReplayError, SceneError, recipe::RecipeError, session::SessionError};
 
-/// What came of a call.
+/// Result of a call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// It did its work.
+    /// Success.
     Ok = 0,
-    /// An argument is NULL where it must not be, is no text in UTF-8, or out of range.
+    /// Invalid argument: a required pointer is NULL, a string is not valid UTF-8, or a value is out
+    /// of range.
     Argument = 1,
-    /// A mesh cannot be worked with.
+    /// Invalid mesh, or a mesh that the operation does not support.
     Mesh = 2,
-    /// A recipe or the description of a tool cannot be followed.
+    /// Invalid recipe, tool description or mask.
     Recipe = 3,
-    /// A file cannot be read or written.
+    /// A file cannot be opened, read or written.
     File = 4,
-    /// The progress function asked to stop.
+    /// The progress callback returned false.
     Cancelled = 5,
-    /// The call does not fit the state of the handle.
+    /// The call is not allowed in the current state of the handle.
     State = 6,
-    /// A fault of isochore itself; the handles of the call must only be given back.
+    /// Internal error of isochore. Free the handles passed to the call and do not use them
+    /// otherwise.
     Internal = 7,
 }
 
-/// A status other than `Ok`, and words for it.
+/// A status other than `Ok` with its message.
 #[derive(Debug)]
 pub(crate) struct Failure {
     pub(crate) status: Status,
@@ -55,23 +57,24 @@ thread_local! {
     static LAST_ERROR: RefCell<CString> = RefCell::default();
 }
 
-/// What went wrong in the last call on this thread that returned another status than OK, or an empty text. Never NULL; holds
-/// until the next such call.
+/// Returns the message of the last failed call on this thread, or an empty string if no call has
+/// failed. Never NULL. The string is valid until the next failed call on the same thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn isochore_last_error() -> *const c_char {
     LAST_ERROR.with_borrow(|message| message.as_ptr())
 }
 
-/// Does `work`; keeps panics on this side of the border and remembers the message of what fails.
+/// Runs `work`, converts a panic into [`Status::Internal`], and stores the message of a failure for
+/// this thread.
 pub(crate) fn guarded(work: impl FnOnce() -> Result<(), Failure>) -> Status {
-    // Handles that a panic left half changed are not looked at again: `Status::Internal` says so.
+    // A panic may leave a handle half changed; `Status::Internal` forbids further use of it.
     let failure = match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(())) => return Status::Ok,
         Ok(Err(failure)) => failure,
         Err(panic) => {
             let message = panic.downcast_ref::<String>().map(String::as_str);
             let message = message.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("unknown");
-            Failure::new(Status::Internal, format!("internal fault: {message}"))
+            Failure::new(Status::Internal, format!("internal error: {message}"))
         }
     };
     let text = CString::new(failure.message.replace('\0', " ")).unwrap_or_default();
@@ -164,7 +167,7 @@ mod tests {
     use super::*;
 
     fn last_error() -> String {
-        // SAFETY: never NULL, and nothing on this thread fails before it is copied.
+        // SAFETY: the pointer is never NULL, and no call fails on this thread before the text is copied.
         unsafe { CStr::from_ptr(isochore_last_error()) }.to_str().unwrap().to_owned()
     }
 
@@ -173,16 +176,16 @@ mod tests {
     }
 
     #[test]
-    fn panics_stay_on_this_side_and_are_told() {
+    fn panics_become_internal_errors() {
         assert_eq!(guarded(|| panic!("vertex {} is missing", 7)), Status::Internal);
-        assert_eq!(last_error(), "internal fault: vertex 7 is missing");
-        assert_eq!(guarded(|| panic!("words that are known before")), Status::Internal);
-        assert_eq!(last_error(), "internal fault: words that are known before");
+        assert_eq!(last_error(), "internal error: vertex 7 is missing");
+        assert_eq!(guarded(|| panic!("a literal message")), Status::Internal);
+        assert_eq!(last_error(), "internal error: a literal message");
         assert_eq!(guarded(|| std::panic::panic_any(7)), Status::Internal);
-        assert_eq!(last_error(), "internal fault: unknown");
-        // The next call works, and leaves the words.
+        assert_eq!(last_error(), "internal error: unknown");
+        // A successful call keeps the last message.
         assert_eq!(guarded(|| Ok(())), Status::Ok);
-        assert_eq!(last_error(), "internal fault: unknown");
+        assert_eq!(last_error(), "internal error: unknown");
         assert_eq!(guarded(|| fails("ends\0early")), Status::Mesh);
         assert_eq!(last_error(), "ends early");
     }
@@ -190,17 +193,17 @@ mod tests {
     #[test]
     fn each_thread_has_its_own_message() {
         let both_failed = Barrier::new(2);
-        let hear = |message: &'static str| {
+        let fail_and_read = |message: &'static str| {
             let before = last_error();
             assert_eq!(guarded(|| fails(message)), Status::Mesh);
             both_failed.wait();
             (before, last_error())
         };
-        let heard = thread::scope(|scope| {
-            let threads = ["one", "other"].map(|message| scope.spawn(move || hear(message)));
+        let messages = thread::scope(|scope| {
+            let threads = ["one", "other"].map(|message| scope.spawn(move || fail_and_read(message)));
             threads.map(|thread| thread.join().unwrap())
         });
         let own = |message: &str| (String::new(), message.to_owned());
-        assert_eq!(heard, [own("one"), own("other")]);
+        assert_eq!(messages, [own("one"), own("other")]);
     }
 }

@@ -1,6 +1,14 @@
-//! isochore for C: handles, status codes, and a header that is made from this source.
+//! C interface: opaque handles, status codes, and a header generated from these sources by
+//! cbindgen.
+//!
+//! The comments on exported items become the comments of `isochore.h`, so they use C terms and C
+//! names.
 
-#![allow(unsafe_code, reason = "the border to C is made of pointers and exported names")]
+#![allow(unsafe_code, reason = "a C interface consists of raw pointers and exported symbols")]
+#![allow(
+    clippy::missing_safety_doc,
+    reason = "cbindgen copies these comments into the C header, which states preconditions in C terms"
+)]
 
 mod error;
 mod memory;

@@ -10,7 +10,7 @@ use isochore_mesh::{ClosedMesh, TriMesh, io};
 
 use crate::{
     error::{Failure, Status, guarded},
-    memory::{array, fill, free, hand_over, put, reference, reference_mut, text},
+    memory::{array, copy_into, free, hand_over, put, reference, reference_mut, text},
 };
 
 pub use attributes::{
@@ -19,17 +19,20 @@ pub use attributes::{
     isochore_mesh_triangle_materials, isochore_mesh_uvs, isochore_mesh_vertex_colors,
 };
 
-/// A triangle mesh.
+/// A triangle mesh with its attributes.
 #[derive(Debug)]
 pub struct Mesh {
     pub(crate) mesh: Arc<TriMesh>,
 }
 
-/// Copies a mesh out of arrays: x, y, z of each vertex, and three vertex indices of each triangle, counter-clockwise seen from
+/// Creates a mesh from copies of the arrays. `positions` holds x, y, z of each vertex in model
+/// units. `triangles` holds three vertex indices per triangle, counter-clockwise as seen from
 /// outside.
 ///
-/// # Safety
-/// The arrays have 3 × `vertex_count` and 3 × `triangle_count` values; `mesh` can be written to.
+/// Returns `ISOCHORE_STATUS_MESH` if an index is out of range or a coordinate is not finite.
+///
+/// Preconditions: `positions` has 3 × `vertex_count` values. `triangles` has 3 × `triangle_count`
+/// values. `mesh` is writable. Free the mesh with `isochore_mesh_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_new(
     positions: *const f64,
@@ -39,7 +42,7 @@ pub unsafe extern "C" fn isochore_mesh_new(
     mesh: *mut *mut Mesh,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let (positions, triangles) = unsafe {
             (
                 array("positions", positions.cast::<[f64; 3]>(), vertex_count)?,
@@ -47,101 +50,108 @@ pub unsafe extern "C" fn isochore_mesh_new(
             )
         };
         let positions: &[DVec3] = cast_slice(positions);
-        let made = TriMesh::new(positions.to_vec(), triangles.to_vec());
-        made.check_valid()?;
-        // SAFETY: as the caller promises.
-        unsafe { hand_over("mesh", mesh, Mesh { mesh: made.into() }) }
+        let built = TriMesh::new(positions.to_vec(), triangles.to_vec());
+        built.check_valid()?;
+        // SAFETY: the caller guarantees it.
+        unsafe { hand_over("mesh", mesh, Mesh { mesh: built.into() }) }
     })
 }
 
-/// Reads a mesh file: .obj .gltf .glb .ply .stl .off.
+/// Reads a mesh file. The extension selects the format: .obj, .gltf, .glb, .ply, .stl or .off.
 ///
-/// # Safety
-/// `path` is a text; `mesh` can be written to.
+/// Returns `ISOCHORE_STATUS_FILE` if the file cannot be read and `ISOCHORE_STATUS_MESH` if its
+/// content is invalid.
+///
+/// Preconditions: `path` is a string. `mesh` is writable. Free the mesh with `isochore_mesh_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_read(path: *const c_char, mesh: *mut *mut Mesh) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let path = unsafe { text("path", path) }?;
         let read = io::read(path)?;
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe { hand_over("mesh", mesh, Mesh { mesh: read.into() }) }
     })
 }
 
-/// Writes a mesh file in the format of its extension, whole or not at all.
+/// Writes a mesh file in the format that the extension selects. The file is replaced only when the
+/// new one is complete.
 ///
-/// # Safety
-/// `mesh` is a handle, `path` a text.
+/// Returns `ISOCHORE_STATUS_FILE` if the file cannot be written and `ISOCHORE_STATUS_MESH` if the
+/// format cannot represent the mesh.
+///
+/// Preconditions: `mesh` is a handle. `path` is a string.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_write(mesh: *const Mesh, path: *const c_char) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let (mesh, path) = unsafe { (reference("mesh", mesh)?, text("path", path)?) };
         Ok(io::write(path, &mesh.mesh)?)
     })
 }
 
-/// Number of vertices; 0 of NULL.
+/// Returns the number of vertices, or 0 if `mesh` is NULL.
 ///
-/// # Safety
-/// `mesh` is NULL or a handle.
+/// Preconditions: `mesh` is NULL or a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_vertex_count(mesh: *const Mesh) -> usize {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     unsafe { mesh.as_ref() }.map_or(0, |mesh| mesh.mesh.positions.len())
 }
 
-/// Number of triangles; 0 of NULL.
+/// Returns the number of triangles, or 0 if `mesh` is NULL.
 ///
-/// # Safety
-/// `mesh` is NULL or a handle.
+/// Preconditions: `mesh` is NULL or a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_triangle_count(mesh: *const Mesh) -> usize {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     unsafe { mesh.as_ref() }.map_or(0, |mesh| mesh.mesh.triangles.len())
 }
 
-/// x, y, z of each vertex: the mesh's own memory. NULL of NULL.
+/// Returns x, y, z of each vertex in model units, or NULL if `mesh` is NULL. The array belongs to
+/// the mesh.
 ///
-/// # Safety
-/// `mesh` is NULL or a handle.
+/// Preconditions: `mesh` is NULL or a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_positions(mesh: *const Mesh) -> *const f64 {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     unsafe { mesh.as_ref() }.map_or(std::ptr::null(), |mesh| cast_slice(&mesh.mesh.positions).as_ptr())
 }
 
-/// Three vertex indices of each triangle, counter-clockwise seen from outside: the mesh's own memory. NULL of NULL.
+/// Returns three vertex indices per triangle, counter-clockwise as seen from outside, or NULL if
+/// `mesh` is NULL. The array belongs to the mesh.
 ///
-/// # Safety
-/// `mesh` is NULL or a handle.
+/// Preconditions: `mesh` is NULL or a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_triangles(mesh: *const Mesh) -> *const u32 {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     unsafe { mesh.as_ref() }.map_or(std::ptr::null(), |mesh| mesh.mesh.triangles.as_flattened().as_ptr())
 }
 
-/// Signed volume of a closed mesh, cubic model units; an open mesh is an error.
+/// Computes the signed volume of a closed mesh, in cubic model units.
 ///
-/// # Safety
-/// `mesh` is a handle; `volume` can be written to.
+/// Returns `ISOCHORE_STATUS_MESH` if the mesh is open or not consistently oriented.
+///
+/// Preconditions: `mesh` is a handle. `volume` is writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_volume(mesh: *const Mesh, volume: *mut f64) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let mesh = unsafe { reference("mesh", mesh) }?;
-        let enclosed = ClosedMesh::new(&mesh.mesh)?.volume();
-        // SAFETY: as the caller promises.
-        unsafe { put("volume", volume, enclosed) }
+        let enclosed_volume = ClosedMesh::new(&mesh.mesh)?.volume();
+        // SAFETY: the caller guarantees it.
+        unsafe { put("volume", volume, enclosed_volume) }
     })
 }
 
-/// Takes skin weights: `per_vertex` joints of each vertex and as many weights, which are divided by the sum of each vertex'. Weight
-/// zero is for places that are not used.
+/// Sets the skin weights. `joints` and `weights` hold `per_vertex` entries for each vertex. The
+/// weights of each vertex are normalized to sum to 1. Use weight 0 for unused entries.
 ///
-/// # Safety
-/// `mesh` is a handle; the arrays have `per_vertex` values for each vertex.
+/// Returns `ISOCHORE_STATUS_ARGUMENT` if `per_vertex` is 0 or too large, or if a weight is negative
+/// or not finite.
+///
+/// Preconditions: `mesh` is a handle. `joints` and `weights` have `per_vertex` values for each
+/// vertex.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_set_skin(
     mesh: *mut Mesh,
@@ -150,52 +160,51 @@ pub unsafe extern "C" fn isochore_mesh_set_skin(
     weights: *const f64,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
         let vertices = mesh.mesh.positions.len();
         let count = vertices.checked_mul(per_vertex);
         let count = count.ok_or_else(|| Failure::argument(format!("{per_vertex} influences are too many")))?;
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let (joints, weights) = unsafe { (array("joints", joints, count)?, array("weights", weights, count)?) };
         let attributes = &mut Arc::make_mut(&mut mesh.mesh).vertex;
         attributes.set_skin_table(vertices, per_vertex, joints, weights).map_err(Failure::argument)
     })
 }
 
-/// The most joints that move any vertex; 0 where there is no skin, and of NULL.
+/// Returns the largest number of joints of any vertex, or 0 if the mesh has no skin or `mesh` is
+/// NULL.
 ///
-/// # Safety
-/// `mesh` is NULL or a handle.
+/// Preconditions: `mesh` is NULL or a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_skin_influences(mesh: *const Mesh) -> usize {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     unsafe { mesh.as_ref() }.map_or(0, |mesh| mesh.mesh.vertex.skin.iter().map(Vec::len).max().unwrap_or(0))
 }
 
-/// Copies the skin: for each vertex as many joints, and weights that sum to one, as `isochore_mesh_skin_influences` says; weight zero
-/// where there are fewer.
+/// Copies the skin weights. Each vertex has `isochore_mesh_skin_influences` joints and as many
+/// weights, which sum to 1. Unused entries have weight 0.
 ///
-/// # Safety
-/// `mesh` is a handle; so many values can be written to each array.
+/// Preconditions: `mesh` is a handle. `joints` and `weights` have space for
+/// `isochore_mesh_skin_influences` values for each vertex.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_skin(mesh: *const Mesh, joints: *mut u32, weights: *mut f64) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let table = unsafe { reference("mesh", mesh) }?.mesh.vertex.skin_table();
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe {
-            fill("joints", joints, &table.joints)?;
-            fill("weights", weights, &table.weights)
+            copy_into("joints", joints, &table.joints)?;
+            copy_into("weights", weights, &table.weights)
         }
     })
 }
 
-/// Gives a mesh back.
+/// Frees a mesh. Sessions opened on it remain valid.
 ///
-/// # Safety
-/// `mesh` is NULL or a handle that was not given back yet.
+/// Preconditions: `mesh` is NULL or a handle that has not been freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_free(mesh: *mut Mesh) {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     unsafe { free(mesh) }
 }

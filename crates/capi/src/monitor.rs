@@ -1,4 +1,4 @@
-//! Progress and cancellation through a function of the caller's.
+//! Progress and cancellation through a callback.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -7,11 +7,12 @@ use std::{
 
 use isochore_mesh::Monitor;
 
-/// Hears now and then, on any thread and from several at once, the stage at work and the share of it that is done, from 0 to 1;
-/// returning false stops the work. `context` is what was given along with the function.
+/// Progress callback. Receives the name of the current stage and the completed fraction of that
+/// stage, from 0 to 1. Returning false cancels the operation. It may be called from any thread and
+/// from several threads at once. `context` is the pointer passed along with the callback.
 pub type Progress = Option<unsafe extern "C" fn(stage: *const c_char, done: f64, context: *mut c_void) -> bool>;
 
-/// A caller's function that watches the work.
+/// Monitor that calls the progress callback of the caller.
 #[derive(Debug)]
 pub(crate) struct Watcher {
     progress: Progress,
@@ -19,7 +20,7 @@ pub(crate) struct Watcher {
     is_cancelled: AtomicBool,
 }
 
-// SAFETY: the header demands that the function may be called with its context from any thread.
+// SAFETY: the header requires that the callback and its context may be used from any thread.
 unsafe impl Sync for Watcher {}
 
 impl Watcher {
@@ -32,7 +33,7 @@ impl Monitor for Watcher {
     fn update(&self, stage: &'static str, done: f64) {
         let Some(progress) = self.progress else { return };
         let stage = CString::new(stage).unwrap_or_default();
-        // SAFETY: the function came from the caller together with its context; the text ends with a zero.
+        // SAFETY: the caller passed the callback together with this context; `stage` is NUL-terminated.
         if !unsafe { progress(stage.as_ptr(), done, self.context) } {
             self.is_cancelled.store(true, Ordering::Relaxed);
         }

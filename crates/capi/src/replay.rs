@@ -1,4 +1,4 @@
-//! Recipes carried out.
+//! Replay of recipes on meshes and points.
 
 use std::{
     ffi::{c_char, c_void},
@@ -11,29 +11,33 @@ use isochore_sculpt::{Meshes, Recipe, Report, Source, recipe::Format, replay, re
 
 use crate::{
     error::{Failure, Status, guarded},
-    memory::{array, fill, finite_values, hand_over, hand_over_text, reference, text},
+    memory::{array, copy_into, finite_values, hand_over, hand_over_text, reference, text},
     mesh::Mesh,
     monitor::{Progress, Watcher},
 };
 
-/// A mesh by the name that a recipe gives it.
+/// A mesh with the name that a recipe uses for it.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct NamedMesh {
-    /// Name in the recipe, as its keys `mesh` have it.
+    /// Value of a `mesh` key of the recipe.
     pub name: *const c_char,
     /// The mesh.
     pub mesh: *const Mesh,
 }
 
-/// Deforms the target of a recipe, given as the text of a TOML document or, where it begins with a brace, a JSON one. Points of
-/// spines and weights of masks stand in the recipe itself.
+/// Deforms the target of a recipe. `recipe` is the text of a TOML document, or of a JSON document
+/// if it begins with a brace. `meshes` provides the meshes that the recipe names; no file is read.
+/// The recipe must contain the points of spines and the weights of masks itself.
 ///
-/// `report` may be NULL; otherwise it gets a report as JSON, to be given back with `isochore_text_free`. `progress` may be NULL.
+/// Stores the deformed mesh in `mesh`. If `report` is not NULL, stores the report as a JSON string;
+/// free it with `isochore_text_free`. `progress` may be NULL.
 ///
-/// # Safety
-/// `recipe` is a text; `meshes` has `mesh_count` entries; `mesh` can be written to; `progress` may be called from any thread with
-/// `context`.
+/// Returns `ISOCHORE_STATUS_RECIPE` if the recipe is invalid or names a mesh that is missing from
+/// `meshes`, `ISOCHORE_STATUS_MESH` if the result cannot be measured, and
+/// `ISOCHORE_STATUS_CANCELLED` if `progress` returned false.
+///
+/// Preconditions: `recipe` is a string. `meshes` has `mesh_count` entries. `mesh` is writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_run(
     recipe: *const c_char,
@@ -45,38 +49,42 @@ pub unsafe extern "C" fn isochore_run(
     report: *mut *mut c_char,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
-        let (words, given) = unsafe { (text("recipe", recipe)?, array("meshes", meshes, mesh_count)?) };
+        // SAFETY: the caller guarantees it.
+        let (recipe_text, named_meshes) = unsafe { (text("recipe", recipe)?, array("meshes", meshes, mesh_count)?) };
         if mesh.is_null() {
             return Err(Failure::argument("mesh is NULL"));
         }
-        let recipe = Recipe::parse(words, Format::of_text(words), &[])?;
-        // SAFETY: as the caller promises.
-        let meshes = unsafe { named(given) }?;
+        let recipe = Recipe::parse(recipe_text, Format::of_text(recipe_text), &[])?;
+        // SAFETY: the caller guarantees it.
+        let meshes = unsafe { named(named_meshes) }?;
         let watcher = Watcher::new(progress, context);
         let replay = replay(&recipe, &meshes, &watcher)?;
         if !report.is_null() {
-            let source = Source { text: words.as_bytes(), overrides: &[] };
-            let account = Report::new(&recipe, source, &replay, &replay.deformed.mesh, &watcher)?;
-            let account = serde_json::to_string(&account).map_err(Failure::argument)?;
-            // SAFETY: as the caller promises.
-            unsafe { hand_over_text("report", report, &account) }?;
+            let source = Source { text: recipe_text.as_bytes(), overrides: &[] };
+            let json = Report::new(&recipe, source, &replay, &replay.deformed.mesh, &watcher)?;
+            let json = serde_json::to_string(&json).map_err(Failure::argument)?;
+            // SAFETY: the caller guarantees it.
+            unsafe { hand_over_text("report", report, &json) }?;
         }
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe { hand_over("mesh", mesh, Mesh { mesh: replay.deformed.mesh.into() }) }
     })
 }
 
-/// Carries points along the strokes of a recipe, in place: x, y, z of each, in world coordinates, model units. Points have no surface
-/// and no volume: there is no refinement and no lock, and stamps are refused. The target's mesh need not be there, unless a mask has
-/// weights for its vertices.
+/// Advects points along the strokes of a recipe, in place. `points` holds x, y, z of each point in
+/// world coordinates, model units. Points have neither a surface nor a volume, so refinement and
+/// the volume lock do not apply, and a recipe with a stamp is rejected. The target mesh may be
+/// missing unless a mask has weights for its vertices.
 ///
-/// `warnings` may be NULL; otherwise it gets what of the recipe does not apply to points, as JSON, an array of texts, to be given back
-/// with `isochore_text_free`. `progress` may be NULL.
+/// If `warnings` is not NULL, stores a JSON array of strings that name the parts of the recipe that
+/// do not apply to points; free it with `isochore_text_free`. `progress` may be NULL.
 ///
-/// # Safety
-/// `recipe` is a text; `meshes` has `mesh_count` entries; `points` has 3 × `point_count` values, which can be written to; `progress` may
-/// be called from any thread with `context`; `warnings` can be written to where it is not NULL.
+/// Returns `ISOCHORE_STATUS_ARGUMENT` if a coordinate is not finite, `ISOCHORE_STATUS_RECIPE` if
+/// the recipe is invalid, and `ISOCHORE_STATUS_CANCELLED` if `progress` returned false. On failure
+/// the points keep their values.
+///
+/// Preconditions: `recipe` is a string. `meshes` has `mesh_count` entries. `points` has 3 ×
+/// `point_count` writable values. `warnings` is NULL or writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_run_points(
     recipe: *const c_char,
@@ -89,31 +97,31 @@ pub unsafe extern "C" fn isochore_run_points(
     warnings: *mut *mut c_char,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
-        let (words, given) = unsafe { (text("recipe", recipe)?, array("meshes", meshes, mesh_count)?) };
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
+        let (recipe_text, named_meshes) = unsafe { (text("recipe", recipe)?, array("meshes", meshes, mesh_count)?) };
+        // SAFETY: the caller guarantees it.
         let at: Vec<DVec3> = unsafe { finite_values("points", points, 3, point_count, f64::is_finite) }?;
-        let recipe = Recipe::parse(words, Format::of_text(words), &[])?;
-        // SAFETY: as the caller promises.
-        let meshes = unsafe { named(given) }?;
-        let carried = replay_points(&recipe, &meshes, &at, &Watcher::new(progress, context))?;
+        let recipe = Recipe::parse(recipe_text, Format::of_text(recipe_text), &[])?;
+        // SAFETY: the caller guarantees it.
+        let meshes = unsafe { named(named_meshes) }?;
+        let advected = replay_points(&recipe, &meshes, &at, &Watcher::new(progress, context))?;
         if !warnings.is_null() {
-            let found = serde_json::to_string(&carried.warnings).map_err(Failure::argument)?;
-            // SAFETY: as the caller promises.
-            unsafe { hand_over_text("warnings", warnings, &found) }?;
+            let json = serde_json::to_string(&advected.warnings).map_err(Failure::argument)?;
+            // SAFETY: the caller guarantees it.
+            unsafe { hand_over_text("warnings", warnings, &json) }?;
         }
-        // SAFETY: as the caller promises.
-        unsafe { fill("points", points, cast_slice(&carried.points)) }
+        // SAFETY: the caller guarantees it.
+        unsafe { copy_into("points", points, cast_slice(&advected.points)) }
     })
 }
 
-/// The meshes that a caller names.
+/// Collects the meshes that the caller passed.
 ///
 /// # Safety
-/// Names are texts, meshes handles.
+/// Names are strings, meshes are handles.
 pub(crate) unsafe fn named(given: &[NamedMesh]) -> Result<Meshes, Failure> {
     let one = |named: &NamedMesh| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let (name, mesh) = unsafe { (text("meshes.name", named.name)?, reference("meshes.mesh", named.mesh)?) };
         Ok((name.to_owned(), Arc::clone(&mesh.mesh)))
     };

@@ -14,18 +14,22 @@ use crate::{
     replay::{NamedMesh, named},
 };
 
-/// A tool ready to work, made once and shared between strokes and sessions.
+/// A prepared tool. It can be used by any number of strokes and sessions.
 #[derive(Debug)]
 pub struct Tool {
     pub(crate) tool: Arc<SessionTool>,
 }
 
-/// Makes a tool from what a recipe says of one, in JSON: `{"shape": {"kind": "sphere", "radius": 0.1}, "support": 0.1}`. `name` is
-/// what the log calls it. A mesh is sampled now; `progress` may be NULL.
+/// Creates a tool from its description in a recipe, as JSON:
+/// `{"shape": {"kind": "sphere", "radius": 0.1}, "support": 0.1}`.
+/// `name` identifies the tool in the log of a session. `meshes` provides the mesh of a shape of
+/// kind `mesh`, whose distance is sampled during this call. `progress` may be NULL.
 ///
-/// # Safety
-/// `name` and `description` are texts; `meshes` has `mesh_count` entries; `progress` may be called from any thread with `context`;
-/// `tool` can be written to.
+/// Returns `ISOCHORE_STATUS_RECIPE` if the description is invalid or names a mesh that is missing
+/// from `meshes`, and `ISOCHORE_STATUS_CANCELLED` if `progress` returned false.
+///
+/// Preconditions: `name` and `description` are strings. `meshes` has `mesh_count` entries. `tool`
+/// is writable. Free the tool with `isochore_tool_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_tool_new(
     name: *const c_char,
@@ -37,24 +41,23 @@ pub unsafe extern "C" fn isochore_tool_new(
     tool: *mut *mut Tool,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
-        let (name, words, meshes) = unsafe {
+        // SAFETY: the caller guarantees it.
+        let (name, json, meshes) = unsafe {
             (text("name", name)?, text("description", description)?, named(array("meshes", meshes, mesh_count)?)?)
         };
-        let description: recipe::Tool = serde_json::from_str(words)
+        let description: recipe::Tool = serde_json::from_str(json)
             .map_err(|error| Failure::new(Status::Recipe, format!("tools.{name}: {error}")))?;
-        let made = SessionTool::new(name, description, &meshes, &Watcher::new(progress, context))?;
-        // SAFETY: as the caller promises.
-        unsafe { hand_over("tool", tool, Tool { tool: Arc::new(made) }) }
+        let built = SessionTool::new(name, description, &meshes, &Watcher::new(progress, context))?;
+        // SAFETY: the caller guarantees it.
+        unsafe { hand_over("tool", tool, Tool { tool: Arc::new(built) }) }
     })
 }
 
-/// Gives a tool back. Sessions that use it go on.
+/// Frees a tool. Sessions that use it remain valid.
 ///
-/// # Safety
-/// `tool` is NULL or a handle that was not given back yet.
+/// Preconditions: `tool` is NULL or a handle that has not been freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_tool_free(tool: *mut Tool) {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     unsafe { free(tool) }
 }

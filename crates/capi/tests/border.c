@@ -1,4 +1,4 @@
-/* What crosses the border to C: arrays in and out, errors with their words, cancellation. The argument is a file to write. */
+/* Tests of the C interface: arrays in and out, error messages, cancellation. The argument is the path of a file to write. */
 
 #include <isochore.h>
 #include <math.h>
@@ -89,31 +89,31 @@ static void recipes(void) {
     CHECK(strstr(isochore_last_error(), "line 2"));
     CHECK(isochore_run(NULL, NULL, 0, NULL, NULL, &twisted, NULL) == ISOCHORE_STATUS_ARGUMENT);
 
-    int heard = 0;
-    CHECK(isochore_run(TWIST, &named, 1, stop, &heard, &twisted, NULL) == ISOCHORE_STATUS_CANCELLED);
-    CHECK(heard > 0 && twisted == NULL);
+    int updates = 0;
+    CHECK(isochore_run(TWIST, &named, 1, stop, &updates, &twisted, NULL) == ISOCHORE_STATUS_CANCELLED);
+    CHECK(updates > 0 && twisted == NULL);
     isochore_mesh_free(mesh);
 }
 
-/* Ten degrees a unit turn what lies nine units along the axis by ninety; points need no mesh, and those on the axis stay. */
+/* A twist of 10 degrees per unit rotates a point 9 units along the axis by 90 degrees. Points on the axis stay. No mesh is needed. */
 static void points(void) {
-    double carried[] = {1, 0, 0, 1, 0, 9, 0, 0, 3}, faulty[] = {0, 0, 0, 0, 0, NAN};
+    double advected[] = {1, 0, 0, 1, 0, 9, 0, 0, 3}, faulty[] = {0, 0, 0, 0, 0, NAN};
     char *warnings = NULL;
-    int heard = 0;
-    CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, carried, 3, &warnings) == ISOCHORE_STATUS_OK);
-    CHECK(carried[0] == 1 && carried[1] == 0 && carried[2] == 0);
-    CHECK(fabs(carried[3]) < 1e-15 && fabs(carried[4] - 1) < 1e-15 && carried[5] == 9);
-    CHECK(carried[6] == 0 && carried[7] == 0 && carried[8] == 3);
+    int updates = 0;
+    CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, advected, 3, &warnings) == ISOCHORE_STATUS_OK);
+    CHECK(advected[0] == 1 && advected[1] == 0 && advected[2] == 0);
+    CHECK(fabs(advected[3]) < 1e-15 && fabs(advected[4] - 1) < 1e-15 && advected[5] == 9);
+    CHECK(advected[6] == 0 && advected[7] == 0 && advected[8] == 3);
     CHECK(strstr(warnings, "[\"points enclose no volume") == warnings);
     isochore_text_free(warnings);
 
     CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, NULL, 0, NULL) == ISOCHORE_STATUS_OK);
     CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, NULL, 1, NULL) == ISOCHORE_STATUS_ARGUMENT);
-    CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, carried, SIZE_MAX / 2, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, advected, SIZE_MAX / 2, NULL) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(isochore_run_points(TWIST, NULL, 0, NULL, NULL, faulty, 2, NULL) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(strstr(isochore_last_error(), "element 1"));
-    CHECK(isochore_run_points(TWIST, NULL, 0, stop, &heard, carried, 3, NULL) == ISOCHORE_STATUS_CANCELLED);
-    CHECK(heard > 0 && carried[0] == 1 && carried[5] == 9);
+    CHECK(isochore_run_points(TWIST, NULL, 0, stop, &updates, advected, 3, NULL) == ISOCHORE_STATUS_CANCELLED);
+    CHECK(updates > 0 && advected[0] == 1 && advected[5] == 9);
 }
 
 static void sessions(void) {
@@ -172,7 +172,7 @@ static void sessions(void) {
     CHECK(fabs(hit.weights[0] + hit.weights[1] + hit.weights[2] - 1) < 1e-15);
     CHECK(isochore_session_closest_point(session, above, &hit, &done) == ISOCHORE_STATUS_OK && done);
 
-    /* The log gives the same bits on the same mesh. */
+    /* Replaying the log on the same mesh gives the same bits. */
     CHECK(isochore_session_log(session, &log) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_export(session, false, &moved) == ISOCHORE_STATUS_OK);
     char *recipe = (char *)malloc(strlen(log) + 64);
@@ -197,7 +197,7 @@ static void sessions(void) {
     isochore_mesh_free(mesh);
 }
 
-/* Tells what a host wants to draw, and that a session needs neither its mesh nor its tool any more. */
+/* Queries that a host uses for drawing. The session remains valid after its mesh and its tool are freed. */
 static void queries(void) {
     const double above[] = {0.2, 0.2, 0.5}, below[] = {0.2, 0.2, 0.3}, turn[] = {0, 0, 1, 90}, nowhere[] = {NAN, 0, 0};
     IsochoreMesh *mesh = tetrahedron();
@@ -215,7 +215,7 @@ static void queries(void) {
     CHECK(isochore_session_new(mesh, NULL, &session) == ISOCHORE_STATUS_OK);
     isochore_mesh_free(mesh);
 
-    /* Of the corners only (0, 0, 0), 0.57 away, and (0, 0, 1), as far, are nearer than 0.6. */
+    /* Only the corners (0, 0, 0) and (0, 0, 1), both at distance 0.57, are within 0.6. */
     CHECK(isochore_session_vertices_in_reach(session, tool, above, turn, &vertices, &count) == ISOCHORE_STATUS_OK);
     CHECK(count == 2 && vertices[0] == 0 && vertices[1] == 3);
     CHECK(isochore_session_vertices_in_reach(session, tool, nowhere, NULL, &vertices, &count) == ISOCHORE_STATUS_ARGUMENT);
@@ -226,7 +226,7 @@ static void queries(void) {
     CHECK(count > 100 && count < 9 * 9 * 9);
     for (size_t i = 0; i < count; i++) {
         double x = arrows[i].point[0] - 0.2, y = arrows[i].point[1] - 0.2, z = arrows[i].point[2] - 0.5;
-        /* What the ball holds goes with it, whatever else it turns. */
+        /* Points in the core of the ball move with it, also if it rotates. */
         CHECK(x * x + y * y + z * z > 0.001 || fabs(arrows[i].shift[2] + 0.2) < 1e-6);
         CHECK(x * x + y * y + z * z < 0.8 * 0.8);
         rim += fabs(arrows[i].shift[2]) < 0.1;
@@ -247,7 +247,7 @@ static void queries(void) {
     CHECK(isochore_session_moved_volume(session, &outward, &inward) == ISOCHORE_STATUS_OK && outward > 0 && inward > 0);
     CHECK(isochore_session_cancel_stroke(session) == ISOCHORE_STATUS_OK);
 
-    /* A ball around everything, and a budget that is used up, let no edge be split. */
+    /* A kept ball around everything, or an exhausted triangle limit, prevents all splits. */
     const double around[] = {0, 0, 0, 3};
     IsochoreStrokeOptions strokes[] = {{false, 0.2, 0, around, 1}, {false, 0.2, 4, NULL, 0}, FINE};
     for (int stroke = 0; stroke < 3; stroke++) {
@@ -268,10 +268,10 @@ static void queries(void) {
     CHECK(count == isochore_mesh_vertex_count(mesh) && count == 4 + receipt.inserted_vertices - receipt.removed_vertices);
     for (size_t i = 1; i < count; i++) CHECK(vertices[i - 1] < vertices[i]);
     const uint32_t *map = NULL;
-    size_t opened = 0, there = 0;
+    size_t opened = 0, matches = 0;
     CHECK(isochore_session_vertex_map(session, &map, &opened) == ISOCHORE_STATUS_OK && opened == 4);
-    for (size_t i = 0; i < count; i++) there += vertices[i] == map[0];
-    CHECK(there == 1);
+    for (size_t i = 0; i < count; i++) matches += vertices[i] == map[0];
+    CHECK(matches == 1);
     isochore_mesh_free(mesh);
     strokes[0].longest_edge = -1;
     CHECK(isochore_session_begin_stroke(session, NULL, &strokes[0]) == ISOCHORE_STATUS_ARGUMENT);
@@ -323,7 +323,7 @@ static void masks(void) {
     isochore_mesh_free(mesh);
 }
 
-/* What is left of a mesh that a ball pressed into one face, its long edges split. */
+/* Presses a ball into one face of a mesh with refinement and returns the result. */
 static IsochoreMesh *refined_by_a_press(const IsochoreMesh *mesh, bool lock) {
     const double start[] = {0.3, 0.3, 0.8}, end[] = {0.3, 0.3, 0.3};
     IsochoreMesh *refined = NULL;
@@ -342,7 +342,7 @@ static IsochoreMesh *refined_by_a_press(const IsochoreMesh *mesh, bool lock) {
     return refined;
 }
 
-/* Each vertex has two joints of its own, so that those of any other are the joints of its neighbors. */
+/* Each original vertex has two joints of its own, so an inserted vertex has joints of its neighbors. */
 static void skins(void) {
     const uint32_t joints[] = {0, 1, 2, 3, 4, 5, 6, 7};
     const double weights[] = {1, 3, 1, 3, 1, 3, 1, 3}, wrong[] = {1, 3, 1, 3, -1, 3, 1, 3};
@@ -358,24 +358,24 @@ static void skins(void) {
     refined = refined_by_a_press(mesh, false);
     size_t count = isochore_mesh_vertex_count(refined), each = isochore_mesh_skin_influences(refined);
     CHECK(count > 4 && each == 2);
-    uint32_t *found = (uint32_t *)malloc(count * each * sizeof *found);
-    double *shares = (double *)malloc(count * each * sizeof *shares);
-    CHECK(isochore_mesh_skin(refined, found, NULL) == ISOCHORE_STATUS_ARGUMENT);
-    CHECK(isochore_mesh_skin(refined, found, shares) == ISOCHORE_STATUS_OK);
+    uint32_t *found_joints = (uint32_t *)malloc(count * each * sizeof *found_joints);
+    double *found_weights = (double *)malloc(count * each * sizeof *found_weights);
+    CHECK(isochore_mesh_skin(refined, found_joints, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_mesh_skin(refined, found_joints, found_weights) == ISOCHORE_STATUS_OK);
     for (size_t vertex = 0; vertex < count; vertex++) {
-        CHECK(fabs(shares[2 * vertex] + shares[2 * vertex + 1] - 1) < 1e-15);
-        CHECK(found[2 * vertex] < 8 && found[2 * vertex + 1] < 8);
-        CHECK(vertex >= 4 || (found[2 * vertex] == 2 * vertex && shares[2 * vertex] == 0.25));
+        CHECK(fabs(found_weights[2 * vertex] + found_weights[2 * vertex + 1] - 1) < 1e-15);
+        CHECK(found_joints[2 * vertex] < 8 && found_joints[2 * vertex + 1] < 8);
+        CHECK(vertex >= 4 || (found_joints[2 * vertex] == 2 * vertex && found_weights[2 * vertex] == 0.25));
     }
-    free(found);
-    free(shares);
+    free(found_joints);
+    free(found_weights);
     isochore_mesh_free(refined);
     isochore_mesh_free(mesh);
 }
 
-/* What a host hands over with its mesh comes back from a session, and files show it. */
+/* Attributes set by a host pass through a session and are written to files. */
 static void attributes(const char *path) {
-    const uint32_t of_triangles[] = {0, 1, 0, 1}, wrong[] = {0, 1, 0, 2};
+    const uint32_t triangle_materials[] = {0, 1, 0, 1}, wrong[] = {0, 1, 0, 2};
     const char *const names[] = {"clay", "glaze"};
     double colors[16];
     float uvs[24], normals[36];
@@ -408,7 +408,7 @@ static void attributes(const char *path) {
     CHECK(isochore_mesh_set_vertex_colors(mesh, colors) == ISOCHORE_STATUS_OK);
     CHECK(isochore_mesh_set_materials(mesh, wrong, names, 2) == ISOCHORE_STATUS_ARGUMENT);
     CHECK(strstr(isochore_last_error(), "triangle 3"));
-    CHECK(isochore_mesh_set_materials(mesh, of_triangles, names, 2) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_mesh_set_materials(mesh, triangle_materials, names, 2) == ISOCHORE_STATUS_OK);
 
     CHECK(isochore_mesh_uvs(mesh, 1, &coordinates, &count) == ISOCHORE_STATUS_OK);
     CHECK(count == 24 && memcmp(coordinates, uvs, sizeof uvs) == 0);

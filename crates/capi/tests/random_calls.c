@@ -1,5 +1,5 @@
-/* Ten thousand calls in no order, faulty ones among them, after each of which the session must be as sound as before. The argument is
- * a file that it does not need. */
+/* Makes ten thousand random calls, including invalid ones, and checks that the session stays consistent. The argument is the path of a
+ * file, which this test ignores. */
 
 #include <isochore.h>
 #include <math.h>
@@ -18,7 +18,7 @@
 
 #define CALLS 10000
 
-/* A cube: small, so that ten thousand calls are quick even under valgrind. */
+/* A cube. It is small so that ten thousand calls are fast even under valgrind. */
 static const double CORNERS[] = {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1};
 static const uint32_t FACES[] = {0, 3, 2, 0, 2, 1, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
                                  1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
@@ -26,7 +26,7 @@ static const char *const BALL = "{\"shape\": {\"kind\": \"sphere\", \"radius\": 
 
 static int calls = 0;
 
-/* Numbers without a pattern, from 0 to 1 (D. Lehmer's generator, with P. L'Ecuyer's multiplier of 1999). */
+/* Pseudorandom numbers in [0, 1): a linear congruential generator (D. Lehmer) with the multiplier of P. L'Ecuyer (1999). */
 static double number(void) {
     static uint64_t state = 1;
     state = state * UINT64_C(0xd1342543de82ef95) + 1;
@@ -41,7 +41,7 @@ static void anywhere(double point[3]) {
     }
 }
 
-/* A step of a walk that does not lead far from the cube. */
+/* One step of a random walk that stays near the cube. */
 static void walk(double point[3]) {
     for (int axis = 0; axis < 3; axis++) {
         point[axis] = 0.95 * point[axis] + number() - 0.5;
@@ -54,9 +54,9 @@ static IsochoreMesh *cube(void) {
     if (below(2)) {
         uint32_t joints[16];
         double weights[16];
-        for (int place = 0; place < 16; place++) {
-            joints[place] = below(5);
-            weights[place] = number();
+        for (int i = 0; i < 16; i++) {
+            joints[i] = below(5);
+            weights[i] = number();
         }
         CHECK(isochore_mesh_set_skin(mesh, 2, joints, weights) == ISOCHORE_STATUS_OK);
     }
@@ -68,7 +68,7 @@ static IsochoreSession *opened(IsochoreMesh *mesh) {
     IsochoreSessionOptions options;
     double weights[8];
     memset(&options, 0, sizeof options);
-    /* Little, so that strokes are forgotten. */
+    /* The small budget makes the session drop old strokes from the history. */
     options.undo_bytes = below(2) ? 20000 : 0;
     if (below(2)) {
         for (int vertex = 0; vertex < 8; vertex++) {
@@ -82,7 +82,7 @@ static IsochoreSession *opened(IsochoreMesh *mesh) {
     return session;
 }
 
-/* Reads all that the session shows. */
+/* Reads all buffers and changed ranges of the session. */
 static void look_at(IsochoreSession *session) {
     IsochoreBuffers buffers;
     const IsochoreRange *ranges = NULL;
@@ -106,7 +106,7 @@ static void look_at(IsochoreSession *session) {
     }
 }
 
-/* The surface as a mesh of its own, and back through all that a mesh can tell. */
+/* Exports the surface and checks the exported mesh. */
 static void export_from(IsochoreSession *session) {
     IsochoreMesh *mesh = NULL;
     const uint32_t *vertices = NULL, *map = NULL;
@@ -118,14 +118,14 @@ static void export_from(IsochoreSession *session) {
     for (size_t i = 1; i < count; i++) {
         CHECK(vertices[i - 1] < vertices[i]);
     }
-    /* What stands in the place of each vertex of the cube is there. */
+    /* Each vertex of the cube maps to an existing vertex. */
     CHECK(isochore_session_vertex_map(session, &map, &opened_count) == ISOCHORE_STATUS_OK && opened_count == 8);
     for (size_t vertex = 0; vertex < opened_count; vertex++) {
-        size_t place = 0;
-        while (place < count && vertices[place] != map[vertex]) {
-            place++;
+        size_t index = 0;
+        while (index < count && vertices[index] != map[vertex]) {
+            index++;
         }
-        CHECK(place < count);
+        CHECK(index < count);
     }
     CHECK(isochore_mesh_volume(mesh, &volume) == ISOCHORE_STATUS_OK && isfinite(volume));
     size_t values = isochore_mesh_vertex_count(mesh) * isochore_mesh_skin_influences(mesh);
@@ -219,7 +219,7 @@ int main(void) {
         IsochoreStrokeReceipt receipt;
         bool is_done;
         memset(&receipt, 0, sizeof receipt);
-        /* Strokes are begun, moved and ended as often as not out of turn. */
+        /* About half of the calls that begin, move and end strokes come out of order. */
         switch (below(16)) {
         case 0:
         case 1:

@@ -1,4 +1,5 @@
-//! What corners, vertices and triangles carry: arrays in, the mesh's own memory out.
+//! Attributes of corners, vertices and triangles. Setters copy arrays; getters expose memory of the
+//! mesh.
 
 use std::{ffi::c_char, sync::Arc};
 
@@ -12,31 +13,38 @@ use crate::{
     memory::{array, finite_values, hand_over_text, put_slice, reference, reference_mut, text},
 };
 
-/// Copies texture coordinates: u, v of the three corners of each triangle. Sets are numbered from 0; the one after the last is added.
+/// Sets texture coordinates: u, v of the three corners of each triangle. Sets are numbered from 0.
+/// An existing set is replaced; the number after the last set adds a set.
 ///
-/// # Safety
-/// `mesh` is a handle; `uvs` has 6 values for each triangle.
+/// Returns `ISOCHORE_STATUS_ARGUMENT` if a coordinate is not finite or if `set` would leave a gap.
+///
+/// Preconditions: `mesh` is a handle. `uvs` has 6 values for each triangle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_set_uvs(mesh: *mut Mesh, set: usize, uvs: *const f32) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let uvs = unsafe { finite_values("uvs", uvs, 6, mesh.mesh.triangles.len(), f32::is_finite) }?;
         let sets = &mut Arc::make_mut(&mut mesh.mesh).corner.uvs;
         match (set, sets.len()) {
             (set, count) if set < count => sets[set] = uvs,
             (set, count) if set == count => sets.push(uvs),
-            (set, count) => return Err(Failure::argument(format!("set {set} would leave a gap after {count} sets"))),
+            (set, count) => {
+                return Err(Failure::argument(format!(
+                    "set {set} is out of range: the mesh has {count} sets, so the next one is set {count}"
+                )));
+            }
         }
         Ok(())
     })
 }
 
-/// Tells where the texture coordinates of a set lie, and how many numbers they are: six a triangle, none where there is no such set.
+/// Gets the texture coordinates of a set, u, v of the three corners of each triangle. `count`
+/// receives the number of values: 6 per triangle, or 0 if the set does not exist. The array belongs
+/// to the mesh.
 ///
-/// # Safety
-/// `mesh` is a handle; `uvs` and `count` can be written to.
+/// Preconditions: `mesh` is a handle. `uvs` and `count` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_uvs(
     mesh: *const Mesh,
@@ -44,23 +52,25 @@ pub unsafe extern "C" fn isochore_mesh_uvs(
     uvs: *mut *const f32,
     count: *mut usize,
 ) -> Status {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     guarded(|| unsafe {
         let sets = &reference("mesh", mesh)?.mesh.corner.uvs;
         put_slice("uvs", uvs, count, cast_slice(sets.get(set).map_or(&[], Vec::as_slice)))
     })
 }
 
-/// Copies shading normals: x, y, z, of any length, of the three corners of each triangle. They turn with the surface.
+/// Sets shading normals: x, y, z of the three corners of each triangle, of any nonzero length. They
+/// rotate with the surface.
 ///
-/// # Safety
-/// `mesh` is a handle; `normals` has 9 values for each triangle.
+/// Returns `ISOCHORE_STATUS_ARGUMENT` if a normal is zero or not finite.
+///
+/// Preconditions: `mesh` is a handle. `normals` has 9 values for each triangle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_set_normals(mesh: *mut Mesh, normals: *const f32) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let normals: Vec<[Vec3; 3]> =
             unsafe { finite_values("normals", normals, 9, mesh.mesh.triangles.len(), f32::is_finite) }?;
         let normals: Vec<_> = normals.into_iter().map(|corners| corners.map(|normal| normal.as_dvec3())).collect();
@@ -68,126 +78,135 @@ pub unsafe extern "C" fn isochore_mesh_set_normals(mesh: *mut Mesh, normals: *co
     })
 }
 
-/// Tells where the shading normals lie, and how many numbers they are: nine a triangle, or none.
+/// Gets the shading normals, x, y, z of unit length for the three corners of each triangle. `count`
+/// receives the number of values: 9 per triangle, or 0 if the mesh has no normals. The array
+/// belongs to the mesh.
 ///
-/// # Safety
-/// `mesh` is a handle; `normals` and `count` can be written to.
+/// Preconditions: `mesh` is a handle. `normals` and `count` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_normals(
     mesh: *const Mesh,
     normals: *mut *const f32,
     count: *mut usize,
 ) -> Status {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     guarded(|| unsafe {
         put_slice("normals", normals, count, cast_slice(&reference("mesh", mesh)?.mesh.corner.normals))
     })
 }
 
-/// Copies colors: linear red, green, blue and alpha of each vertex, 0 to 1.
+/// Sets vertex colors: linear red, green, blue and alpha of each vertex, from 0 to 1.
 ///
-/// # Safety
-/// `mesh` is a handle; `colors` has 4 values for each vertex.
+/// Returns `ISOCHORE_STATUS_ARGUMENT` if a value is not finite.
+///
+/// Preconditions: `mesh` is a handle. `colors` has 4 values for each vertex.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_set_vertex_colors(mesh: *mut Mesh, colors: *const f64) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let colors = unsafe { finite_values("colors", colors, 4, mesh.mesh.positions.len(), f64::is_finite) }?;
         Arc::make_mut(&mut mesh.mesh).vertex.colors = colors;
         Ok(())
     })
 }
 
-/// Tells where the colors of the vertices lie, and how many numbers they are: four a vertex, or none.
+/// Gets the vertex colors. `count` receives the number of values: 4 per vertex, or 0 if the mesh
+/// has no vertex colors. The array belongs to the mesh.
 ///
-/// # Safety
-/// `mesh` is a handle; `colors` and `count` can be written to.
+/// Preconditions: `mesh` is a handle. `colors` and `count` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_vertex_colors(
     mesh: *const Mesh,
     colors: *mut *const f64,
     count: *mut usize,
 ) -> Status {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     guarded(|| unsafe { put_slice("colors", colors, count, cast_slice(&reference("mesh", mesh)?.mesh.vertex.colors)) })
 }
 
-/// Copies colors: linear red, green, blue and alpha of the three corners of each triangle, 0 to 1, where they differ across seams.
+/// Sets corner colors, which may differ across seams: linear red, green, blue and alpha of the
+/// three corners of each triangle, from 0 to 1.
 ///
-/// # Safety
-/// `mesh` is a handle; `colors` has 12 values for each triangle.
+/// Returns `ISOCHORE_STATUS_ARGUMENT` if a value is not finite.
+///
+/// Preconditions: `mesh` is a handle. `colors` has 12 values for each triangle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_set_corner_colors(mesh: *mut Mesh, colors: *const f64) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let colors = unsafe { finite_values("colors", colors, 12, mesh.mesh.triangles.len(), f64::is_finite) }?;
         Arc::make_mut(&mut mesh.mesh).corner.colors = colors;
         Ok(())
     })
 }
 
-/// Tells where the colors of the corners lie, and how many numbers they are: twelve a triangle, or none.
+/// Gets the corner colors. `count` receives the number of values: 12 per triangle, or 0 if the mesh
+/// has no corner colors. The array belongs to the mesh.
 ///
-/// # Safety
-/// `mesh` is a handle; `colors` and `count` can be written to.
+/// Preconditions: `mesh` is a handle. `colors` and `count` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_corner_colors(
     mesh: *const Mesh,
     colors: *mut *const f64,
     count: *mut usize,
 ) -> Status {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     guarded(|| unsafe { put_slice("colors", colors, count, cast_slice(&reference("mesh", mesh)?.mesh.corner.colors)) })
 }
 
-/// Copies the materials: the number of each triangle's material, and the names of all.
+/// Sets the material index of each triangle and the names of all materials. An empty name means no
+/// material.
 ///
-/// # Safety
-/// `mesh` is a handle; `of_triangles` has a value for each triangle, `names` has `count` texts.
+/// Returns `ISOCHORE_STATUS_ARGUMENT` if an index is not less than `count`.
+///
+/// Preconditions: `mesh` is a handle. `triangle_materials` has one value for each triangle. `names`
+/// has `count` strings.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_set_materials(
     mesh: *mut Mesh,
-    of_triangles: *const u32,
+    triangle_materials: *const u32,
     names: *const *const c_char,
     count: usize,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let mesh = unsafe { reference_mut("mesh", mesh) }?;
-        // SAFETY: as the caller promises.
-        let (numbers, names) =
-            unsafe { (array("of_triangles", of_triangles, mesh.mesh.triangles.len())?, array("names", names, count)?) };
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
+        let indices = unsafe { array("triangle_materials", triangle_materials, mesh.mesh.triangles.len()) }?;
+        // SAFETY: the caller guarantees it.
+        let names = unsafe { array("names", names, count) }?;
+        // SAFETY: the caller guarantees it.
         let names = names.iter().map(|&name| unsafe { text("names", name) }.map(str::to_owned));
         let names = names.collect::<Result<_, _>>()?;
-        Arc::make_mut(&mut mesh.mesh).set_materials(names, numbers.to_vec()).map_err(Failure::argument)
+        Arc::make_mut(&mut mesh.mesh).set_materials(names, indices.to_vec()).map_err(Failure::argument)
     })
 }
 
-/// Tells where the number of each triangle's material lies, and how many they are: one a triangle, or none.
+/// Gets the material index of each triangle. `count` receives the number of values: 1 per triangle,
+/// or 0 if the mesh has no materials. The array belongs to the mesh.
 ///
-/// # Safety
-/// `mesh` is a handle; `of_triangles` and `count` can be written to.
+/// Preconditions: `mesh` is a handle. `triangle_materials` and `count` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_triangle_materials(
     mesh: *const Mesh,
-    of_triangles: *mut *const u32,
+    triangle_materials: *mut *const u32,
     count: *mut usize,
 ) -> Status {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     guarded(|| unsafe {
-        put_slice("of_triangles", of_triangles, count, &reference("mesh", mesh)?.mesh.triangle_materials)
+        put_slice("triangle_materials", triangle_materials, count, &reference("mesh", mesh)?.mesh.triangle_materials)
     })
 }
 
-/// Gives the name of a material, which the caller gives back to `isochore_text_free`.
+/// Gets a copy of the name of a material. Free it with `isochore_text_free`.
 ///
-/// # Safety
-/// `mesh` is a handle; `name` can be written to.
+/// Returns `ISOCHORE_STATUS_ARGUMENT` if `material` is out of range.
+///
+/// Preconditions: `mesh` is a handle. `name` is writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_mesh_material_name(
     mesh: *const Mesh,
@@ -195,12 +214,13 @@ pub unsafe extern "C" fn isochore_mesh_material_name(
     name: *mut *mut c_char,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let mesh: &TriMesh = &unsafe { reference("mesh", mesh) }?.mesh;
-        let known = mesh.materials.get(material);
-        let known = known
-            .ok_or_else(|| Failure::argument(format!("there is no material {material} of {}", mesh.materials.len())))?;
-        // SAFETY: as the caller promises.
+        let count = mesh.materials.len();
+        let known = mesh.materials.get(material).ok_or_else(|| {
+            Failure::argument(format!("material {material} is out of range: the mesh has {count} materials"))
+        })?;
+        // SAFETY: the caller guarantees it.
         unsafe { hand_over_text("name", name, known) }
     })
 }

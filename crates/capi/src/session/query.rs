@@ -1,4 +1,4 @@
-//! What a host asks of a session.
+//! Queries on a session.
 
 use glam::DVec3;
 use isochore_mesh::NONE;
@@ -11,66 +11,70 @@ use crate::{
     tool::Tool,
 };
 
-/// A point of the surface that a query found.
+/// A point of the surface found by a query.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Hit {
-    /// The triangle.
+    /// Triangle that contains the point.
     pub triangle: u32,
-    /// Its vertices.
+    /// Vertices of the triangle.
     pub vertices: [u32; 3],
-    /// The point, model units.
+    /// Position, model units.
     pub point: [f64; 3],
-    /// Its barycentric coordinates in the triangle: how much each of the vertices counts for it.
+    /// Barycentric coordinates of the point in the triangle.
     pub weights: [f64; 3],
     /// Unit normal of the triangle.
     pub normal: [f64; 3],
-    /// Distance from where the query began: of a closest point in model units, of a pick in lengths of its direction.
+    /// Distance from the query point in model units. For a ray, the ray parameter: the distance
+    /// divided by the length of its direction.
     pub distance: f64,
 }
 
-/// Where the flow of one move carries a point.
+/// A point and its displacement by one move.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Arrow {
-    /// Where the point is, model units.
+    /// Position, model units.
     pub point: [f64; 3],
-    /// By how much the move carries it, model units.
+    /// Displacement, model units.
     pub shift: [f64; 3],
 }
 
-/// Where a render vertex comes from.
+/// Source of a render vertex.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Origin {
-    /// The vertex that it shows; `UINT32_MAX` where that was removed. The first ones are those of the mesh as opened; inserted ones
-    /// follow, and may take the numbers of others that an earlier stroke has removed.
+    /// Vertex that the render vertex belongs to, or `UINT32_MAX` if it has been removed. The
+    /// vertices of the opened mesh come first. Inserted vertices follow and may reuse the numbers
+    /// of vertices that an earlier stroke removed.
     pub vertex: u32,
-    /// The triangle of the mesh as opened that it takes its attributes from; `UINT32_MAX` for a vertex without triangles.
+    /// Triangle of the opened mesh that provides the attributes, or `UINT32_MAX` for a vertex
+    /// without triangles.
     pub triangle: u32,
     /// Barycentric coordinates in that triangle.
     pub weights: [f64; 3],
 }
 
-/// What can be undone and redone.
+/// Size of the undo history.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct History {
-    /// Strokes that can be undone.
+    /// Number of strokes that can be undone.
     pub undoable: usize,
-    /// Strokes that can be redone.
+    /// Number of strokes that can be redone.
     pub redoable: usize,
-    /// Strokes that can no longer be undone, because there was no room for them; the log still has them.
+    /// Number of strokes that the memory budget has removed from the history. The log still
+    /// contains them.
     pub forgotten: usize,
-    /// Bytes held.
+    /// Memory in use, in bytes.
     pub bytes: usize,
 }
 
-/// The vertices that were not removed, in ascending order: vertex i of `isochore_session_export` is number i of these in the session.
-/// They are in the session's own memory, until it is asked again.
+/// Gets the vertices that have not been removed, in ascending order. Vertex i of a mesh from
+/// `isochore_session_export` is element i of this array. The array belongs to the session and is
+/// valid until the next call to this function.
 ///
-/// # Safety
-/// `session` is a handle; `vertices` and `count` can be written to.
+/// Preconditions: `session` is a handle. `vertices` and `count` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_vertices(
     session: *mut Session,
@@ -78,19 +82,19 @@ pub unsafe extern "C" fn isochore_session_vertices(
     count: *mut usize,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let session = unsafe { reference_mut("session", session) }?;
         session.vertices = session.session.vertices().collect();
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe { put_slice("vertices", vertices, count, &session.vertices) }
     })
 }
 
-/// For each vertex of the mesh as opened, `count` of them, the vertex that stands in its place: itself, or the one that collapses have
-/// merged it into. They are in the session's own memory, until it is asked again.
+/// Maps each vertex of the opened mesh to the vertex that represents it: the vertex itself, or the
+/// one that collapses have merged it into. `count` receives the number of vertices of the opened
+/// mesh. The array belongs to the session and is valid until the next call to this function.
 ///
-/// # Safety
-/// `session` is a handle; `vertices` and `count` can be written to.
+/// Preconditions: `session` is a handle. `vertices` and `count` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_vertex_map(
     session: *mut Session,
@@ -98,18 +102,19 @@ pub unsafe extern "C" fn isochore_session_vertex_map(
     count: *mut usize,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let session = unsafe { reference_mut("session", session) }?;
         session.vertex_map = session.session.vertex_map();
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe { put_slice("vertices", vertices, count, &session.vertex_map) }
     })
 }
 
-/// The first point of the surface on a ray; `is_hit` tells whether there is one.
+/// Finds the first point of the surface along a ray. `direction` may have any nonzero length.
+/// `is_hit` receives whether the ray hits the surface; `hit` is written only in that case.
 ///
-/// # Safety
-/// `session` is a handle; `origin` and `direction` have three values; `hit` and `is_hit` can be written to.
+/// Preconditions: `session` is a handle. `origin` and `direction` have 3 values. `hit` and `is_hit`
+/// are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_pick(
     session: *const Session,
@@ -119,7 +124,7 @@ pub unsafe extern "C" fn isochore_session_pick(
     is_hit: *mut bool,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe {
             let session = &reference("session", session)?.session;
             let [origin, direction] = [point("origin", origin)?, point("direction", direction)?];
@@ -128,10 +133,10 @@ pub unsafe extern "C" fn isochore_session_pick(
     })
 }
 
-/// The point of the surface nearest to a point; `is_hit` tells whether there is one.
+/// Finds the point of the surface closest to a point. `is_hit` receives false, and `hit` is not
+/// written, if the mesh has no triangles.
 ///
-/// # Safety
-/// `session` is a handle; `from` has three values; `hit` and `is_hit` can be written to.
+/// Preconditions: `session` is a handle. `from` has 3 values. `hit` and `is_hit` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_closest_point(
     session: *const Session,
@@ -140,7 +145,7 @@ pub unsafe extern "C" fn isochore_session_closest_point(
     is_hit: *mut bool,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe {
             let session = &reference("session", session)?.session;
             answer(session.closest_point(point("from", from)?), hit, is_hit)
@@ -148,28 +153,32 @@ pub unsafe extern "C" fn isochore_session_closest_point(
     })
 }
 
-/// Volume inside the surface without the stroke under way, cubic model units; an open surface is an error.
+/// Computes the volume enclosed by the surface before any volume lock, without the stroke in
+/// progress, in cubic model units.
 ///
-/// # Safety
-/// `session` is a handle; `volume` can be written to.
+/// Returns `ISOCHORE_STATUS_MESH` if the surface is open.
+///
+/// Preconditions: `session` is a handle. `volume` is writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_volume(session: *const Session, volume: *mut f64) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
-        let enclosed = unsafe { reference("session", session) }?.session.volume();
-        let enclosed = enclosed.ok_or_else(|| Failure::new(Status::Mesh, "the surface is open"))?;
-        // SAFETY: as the caller promises.
-        unsafe { put("volume", volume, enclosed) }
+        // SAFETY: the caller guarantees it.
+        let enclosed_volume = unsafe { reference("session", session) }?.session.volume();
+        let enclosed_volume =
+            enclosed_volume.ok_or_else(|| Failure::new(Status::Mesh, "the surface is open and encloses no volume"))?;
+        // SAFETY: the caller guarantees it.
+        unsafe { put("volume", volume, enclosed_volume) }
     })
 }
 
-/// The vertices within the support of a tool at a pose, given as to `isochore_session_move_to`: those that it moves as soon as it
-/// moves, masks apart, in ascending order. They count as reached where the flow has left them, without what the lock has added. They are
-/// in the session's own memory, until it is asked again.
+/// Gets the vertices within the support of a tool at a pose, in ascending order. These are the
+/// vertices that a stroke moves as soon as the tool moves, ignoring masks. The test uses positions
+/// without the displacements of the volume lock. The pose has the form described at
+/// `isochore_session_move_to`. The array belongs to the session and is valid until the next call to
+/// this function.
 ///
-/// # Safety
-/// `session` and `tool` are handles; `at` has three values, `rotate` four where it is not NULL; `vertices` and `count` can be written
-/// to.
+/// Preconditions: `session` and `tool` are handles. `at` has 3 values. `rotate` is NULL or has 4
+/// values. `vertices` and `count` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_vertices_in_reach(
     session: *mut Session,
@@ -180,22 +189,23 @@ pub unsafe extern "C" fn isochore_session_vertices_in_reach(
     count: *mut usize,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let (session, tool, pose) =
             unsafe { (reference_mut("session", session)?, reference("tool", tool)?, pose(at, rotate)?) };
         session.session.vertices_in_reach(&tool.tool, &pose, &mut session.reached);
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe { put_slice("vertices", vertices, count, &session.reached) }
     })
 }
 
-/// Where a move of a tool from one pose to another, each given as to `isochore_session_move_to`, would carry a lattice of points
-/// around it, `per_side` along the longest side of its support, 64 at most: arrows to draw, masks included. They are in the session's
-/// own memory, until it is asked again.
+/// Computes the displacements of a lattice of points around a tool if it moved from one pose to
+/// another, for display as arrows. Masks apply. `per_side` is the number of points along the
+/// longest side of the support, at most 64. The poses have the form described at
+/// `isochore_session_move_to`. The array belongs to the session and is valid until the next call to
+/// this function.
 ///
-/// # Safety
-/// `session` and `tool` are handles; `from` and `to` have three values, `from_rotate` and `to_rotate` four where they are not NULL;
-/// `arrows` and `count` can be written to.
+/// Preconditions: `session` and `tool` are handles. `from` and `to` have 3 values. `from_rotate`
+/// and `to_rotate` are NULL or have 4 values. `arrows` and `count` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_preview(
     session: *mut Session,
@@ -209,9 +219,9 @@ pub unsafe extern "C" fn isochore_session_preview(
     count: *mut usize,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let (session, tool) = unsafe { (reference_mut("session", session)?, reference("tool", tool)?) };
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let (from, to) = unsafe { (pose(from, from_rotate)?, pose(to, to_rotate)?) };
         let found = session.session.preview(&tool.tool, &from, &to, per_side)?;
         let arrow = |arrow: &isochore_sculpt::session::Arrow| Arrow {
@@ -219,15 +229,15 @@ pub unsafe extern "C" fn isochore_session_preview(
             shift: arrow.shift.to_array(),
         };
         session.arrows = found.iter().map(arrow).collect();
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe { put_slice("arrows", arrows, count, &session.arrows) }
     })
 }
 
-/// Volume that the stroke under way has moved outward and inward so far, cubic model units; zero where there is none.
+/// Gets the volumes that the stroke in progress has moved outward and inward, in cubic model units;
+/// 0 if no stroke is in progress.
 ///
-/// # Safety
-/// `session` is a handle; `outward` and `inward` can be written to.
+/// Preconditions: `session` is a handle. `outward` and `inward` are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_moved_volume(
     session: *const Session,
@@ -235,9 +245,9 @@ pub unsafe extern "C" fn isochore_session_moved_volume(
     inward: *mut f64,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let moved = unsafe { reference("session", session) }?.session.moved_volume();
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe {
             put("outward", outward, moved.outward)?;
             put("inward", inward, moved.inward)
@@ -245,26 +255,31 @@ pub unsafe extern "C" fn isochore_session_moved_volume(
     })
 }
 
-/// What can be undone and redone.
+/// Gets the size of the undo history.
 ///
-/// # Safety
-/// `session` is a handle; `history` can be written to.
+/// Preconditions: `session` is a handle. `history` is writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_history(session: *const Session, history: *mut History) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
-        let now = unsafe { reference("session", session) }?.session.history();
-        let found =
-            History { undoable: now.undoable, redoable: now.redoable, forgotten: now.forgotten, bytes: now.bytes };
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
+        let sizes = unsafe { reference("session", session) }?.session.history();
+        let found = History {
+            undoable: sizes.undoable,
+            redoable: sizes.redoable,
+            forgotten: sizes.forgotten,
+            bytes: sizes.bytes,
+        };
+        // SAFETY: the caller guarantees it.
         unsafe { put("history", history, found) }
     })
 }
 
-/// Where a render vertex comes from, one of those that the buffers hold.
+/// Gets the vertex of a render vertex and the point of the opened mesh that provides its
+/// attributes.
 ///
-/// # Safety
-/// `session` is a handle; `origin` can be written to.
+/// Returns `ISOCHORE_STATUS_ARGUMENT` if `render_vertex` is out of range.
+///
+/// Preconditions: `session` is a handle. `origin` is writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn isochore_session_origin(
     session: *const Session,
@@ -272,33 +287,39 @@ pub unsafe extern "C" fn isochore_session_origin(
     origin: *mut Origin,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         let session = &unsafe { reference("session", session) }?.session;
         let count = session.buffers().positions.len();
         if render_vertex as usize >= count {
-            return Err(Failure::argument(format!("{render_vertex} is none of the {count} render vertices")));
+            return Err(Failure::argument(format!(
+                "render vertex {render_vertex} is out of range: the session has {count} render vertices"
+            )));
         }
-        let (vertex, known) = (session.vertex_of(render_vertex), session.origin_of(render_vertex));
+        let (vertex, origin_point) = (session.vertex_of(render_vertex), session.origin_of(render_vertex));
         let found = Origin {
             vertex,
-            triangle: known.map_or(NONE, |known| known.triangle),
-            weights: known.map_or([0.0; 3], |known| known.weights.to_array()),
+            triangle: origin_point.map_or(NONE, |origin| origin.triangle),
+            weights: origin_point.map_or([0.0; 3], |origin| origin.weights.to_array()),
         };
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe { put("origin", origin, found) }
     })
 }
 
+/// Reads a point.
+///
 /// # Safety
-/// `values` is NULL or has three values.
+/// `values` is NULL or has 3 values.
 unsafe fn point(name: &str, values: *const f64) -> Result<DVec3, Failure> {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     let values = unsafe { array(name, values, 3) }?;
     Ok(DVec3::from_slice(values))
 }
 
+/// Writes the result of a query.
+///
 /// # Safety
-/// `hit` and `is_hit` are NULL or can be written to.
+/// `hit` and `is_hit` are NULL or writable.
 unsafe fn answer(found: Option<SurfaceHit>, hit: *mut Hit, is_hit: *mut bool) -> Result<(), Failure> {
     if let Some(found) = &found {
         let found = Hit {
@@ -309,9 +330,9 @@ unsafe fn answer(found: Option<SurfaceHit>, hit: *mut Hit, is_hit: *mut bool) ->
             normal: found.normal.to_array(),
             distance: found.distance,
         };
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees it.
         unsafe { put("hit", hit, found) }?;
     }
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees it.
     unsafe { put("is_hit", is_hit, found.is_some()) }
 }

@@ -1,22 +1,23 @@
-//! What moves and strokes did.
+//! Results of moves and strokes.
 
 use isochore_sculpt::session;
 
-/// What one move did.
+/// Result of one move.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct MoveReceipt {
-    /// Vertices that moved.
+    /// Number of vertices that moved.
     pub moved_vertices: usize,
-    /// Vertices that splits inserted.
+    /// Number of vertices that splits inserted.
     pub inserted_vertices: usize,
-    /// Vertices that collapses removed.
+    /// Number of vertices that collapses removed.
     pub removed_vertices: usize,
-    /// Edges that were flipped.
+    /// Number of flipped edges.
     pub flipped_edges: usize,
-    /// Whether the limit on triangles kept edges from being split.
+    /// Whether the limit on triangles prevented splits.
     pub is_limited: bool,
-    /// Edges that stay too long because the stroke has stirred the surface there too much for a split to help.
+    /// Number of edges that remain too long because the stroke has distorted the surface too much
+    /// for a split to help.
     pub refused_splits: usize,
 }
 
@@ -33,18 +34,19 @@ impl From<session::MoveReceipt> for MoveReceipt {
     }
 }
 
-/// Why a stroke ended without its lock.
+/// Reason why a stroke ended without the volume lock.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum LockSkipped {
-    /// It did not: the lock acted.
+    /// The lock was applied.
     #[default]
     No = 0,
-    /// The session has none.
+    /// The session has the lock disabled.
     Off = 1,
     /// The surface is open and has no volume.
     NeedsClosed = 2,
-    /// Nothing has moved that the volume depends on; what is missing is left for the lock of the next stroke.
+    /// The vertices that moved cannot change the volume. The lock of the next stroke corrects the
+    /// remaining error.
     NoHold = 3,
 }
 
@@ -59,41 +61,42 @@ impl From<Option<session::LockSkipped>> for LockSkipped {
     }
 }
 
-/// What one stroke did.
+/// Result of one stroke.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct StrokeReceipt {
-    /// Moves that it was made of.
+    /// Number of moves; the first pose does not count.
     pub moves: usize,
-    /// Vertices there before that it moved or removed.
+    /// Number of existing vertices that the stroke moved or removed.
     pub touched_vertices: usize,
-    /// Vertices that splits inserted.
+    /// Number of vertices that splits inserted.
     pub inserted_vertices: usize,
-    /// Vertices that collapses removed.
+    /// Number of vertices that collapses removed.
     pub removed_vertices: usize,
-    /// Edges that were flipped.
+    /// Number of flipped edges.
     pub flipped_edges: usize,
-    /// Whether the limit on triangles kept edges from being split.
+    /// Whether the limit on triangles prevented splits.
     pub is_limited: bool,
-    /// The most edges in any move that stayed too long because the stroke has stirred the surface there too much for a split to help.
+    /// Largest number of edges in any move that remained too long because the stroke has distorted
+    /// the surface too much for a split to help.
     pub refused_splits: usize,
-    /// Whether the surface is closed, and the changes of its volume below mean something.
+    /// Whether the surface is closed. If not, the volume changes below are 0.
     pub has_volume: bool,
-    /// Signed change of the volume by the flow, cubic model units.
+    /// Signed volume change by moving vertices, cubic model units.
     pub volume_flow: f64,
-    /// By splits.
+    /// Signed volume change by splits, cubic model units.
     pub volume_splits: f64,
-    /// By collapses and flips.
+    /// Signed volume change by collapses and flips, cubic model units.
     pub volume_remeshing: f64,
-    /// Bound on the rounding in these.
+    /// Bound on the rounding error of these changes, cubic model units.
     pub volume_rounding: f64,
-    /// Longest displacement by the lock, model units; zero where it was skipped.
+    /// Largest displacement by the volume lock, model units; 0 if it was skipped.
     pub lock_max_shift: f64,
-    /// Why the lock was skipped.
+    /// Reason why the volume lock was skipped.
     pub lock_skipped: LockSkipped,
-    /// Bytes that undo holds for it.
+    /// Memory that undo holds for this stroke, in bytes.
     pub undo_bytes: usize,
-    /// Older strokes that undo forgot to make room.
+    /// Number of older strokes that were removed from the history to stay within the memory budget.
     pub forgotten_strokes: usize,
 }
 
