@@ -1,5 +1,6 @@
-"""The operator in a window, which Blender does not have here: its methods, with what they ask of Blender played."""
+"""The operator in a window. As a Python module Blender has no window, so the tests play the part of Blender."""
 
+import itertools
 import time
 from types import SimpleNamespace
 
@@ -13,18 +14,21 @@ from isochore_blender.surface import read
 
 RECIPE = {
     "recipe": 1,
-    "target": {"mesh": "whatever.obj"},
+    "target": {"mesh": "unused.obj"},
     "tools": {"ball": {"shape": {"kind": "sphere", "radius": 0.5}, "support": 0.4}},
     "stroke": [{"kind": "move", "tool": "ball", "keys": [{"at": [0, 0, 1.4]}, {"at": [0, 0, 0.9]}]}],
     "refine": {"max_edge": 0.1},
 }
 
 LONG = {**RECIPE, "integrate": {"step": 2e-6}, "refine": {"max_edge": 0.02}}
-"""Takes minutes."""
+"""A recipe that takes minutes."""
+
+GUARD = 600.0
+"""Seconds before a test gives up on an operator that does not end."""
 
 
 class Window:
-    """The operator, and the context and what is in it."""
+    """The operator, its context, and the objects that it reaches through the context."""
 
     invoke, execute, modal, cancel = Operator.invoke, Operator.execute, Operator.modal, Operator.cancel
     _finish, _fail = Operator._finish, Operator._fail
@@ -65,11 +69,14 @@ class Window:
         self.status.append(text)
 
     def happen(self, *events):
-        """Sends these events, and then those of the timer until the operator ends, which is to be soon."""
-        for kind in [*events, *["TIMER"] * 3000]:
+        """Sends these events and then timer events until the operator ends. Returns its answer."""
+        deadline = time.monotonic() + GUARD
+        for kind in itertools.chain(events, itertools.repeat("TIMER")):
             answer = self.modal(self, SimpleNamespace(type=kind))
             if answer != {"RUNNING_MODAL"}:
                 return answer
+            if time.monotonic() > deadline:
+                break
             time.sleep(0.01)
         pytest.fail("the operator does not end")
 
@@ -85,11 +92,11 @@ def positions(target):
     return read(target.data.vertices, "co", 3, np.float32)
 
 
-def test_it_works_beside_the_window(ball):
+def test_the_operator_runs_in_the_background(ball):
     window = Window(ball, {**RECIPE, "integrate": {"step": 1e-3}})
     rest = positions(ball)
     assert window.invoke(window, None) == {"RUNNING_MODAL"} and window.timers == 1
-    # The mesh changes at the end alone.
+    # The mesh changes only when the operator ends.
     assert np.array_equal(positions(ball), rest)
     assert window.happen() == {"FINISHED"}
     assert len(ball.data.polygons) > 1000 and window.timers == 0 and not window.is_shown
@@ -98,13 +105,13 @@ def test_it_works_beside_the_window(ball):
     [(kind, text)] = window.reports
     assert kind == "INFO" and "triangles" in text
 
-    # A script waits, and gets the same.
+    # A script waits for the same result.
     now = positions(ball)
     again = Deformation(ball_of(rest), {**RECIPE, "integrate": {"step": 1e-3}})
-    told = []
-    again.run(lambda stage, done: told.append(done))
+    fractions = []
+    again.run(lambda stage, done: fractions.append(done))
     again.finish()
-    assert np.array_equal(positions(again.surface.target), now) and all(0 <= done <= 1 for done in told)
+    assert np.array_equal(positions(again.surface.target), now) and all(0 <= done <= 1 for done in fractions)
 
 
 def ball_of(rest):
@@ -114,7 +121,7 @@ def ball_of(rest):
 
 
 @pytest.mark.parametrize("closes", [False, True])
-def test_it_can_be_stopped(ball, closes):
+def test_the_operator_can_be_stopped(ball, closes):
     window = Window(ball, LONG)
     rest = positions(ball)
     window.invoke(window, None)
@@ -131,7 +138,7 @@ def test_it_can_be_stopped(ball, closes):
     assert np.array_equal(positions(ball), rest) and window.reports == []
 
 
-def test_what_goes_wrong_in_the_thread_is_reported(ball):
+def test_errors_in_the_thread_are_reported(ball):
     window = Window(ball, {**RECIPE, "refin": {}})
     window.invoke(window, None)
     assert window.happen() == {"CANCELLED"}
