@@ -1,4 +1,4 @@
-"""Builds the wheel with maturin, and puts the command `isochore` into it."""
+"""Builds the wheel with maturin and adds the command `isochore` to it."""
 
 import json
 import pathlib
@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import maturin
-from maturin import (  # noqa: F401  what pip asks for besides the wheel
+from maturin import (  # noqa: F401  other hooks of a build backend
     build_sdist,
     get_requires_for_build_sdist,
     get_requires_for_build_wheel,
@@ -18,7 +18,7 @@ SCRIPTS = ROOT / "target" / "python" / "isochore.data" / "scripts"
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
-    # Already here maturin asks for the folder.
+    # maturin requires the folder even for metadata.
     SCRIPTS.mkdir(parents=True, exist_ok=True)
     return maturin.prepare_metadata_for_build_wheel(metadata_directory, config_settings)
 
@@ -29,7 +29,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def _stage_command():
-    """Compiles the command and lays it where maturin takes scripts from."""
+    """Compiles the command and copies it to the scripts folder that maturin packages."""
     subprocess.run(["cargo", "build", "--release", "--locked", "--package", "isochore-cli"], cwd=ROOT, check=True)
     metadata = subprocess.run(
         ["cargo", "metadata", "--no-deps", "--format-version", "1"], cwd=ROOT, check=True, capture_output=True

@@ -1,4 +1,4 @@
-"""Presses a torus into a box from trimesh, and prints what became of its volume."""
+"""Presses a torus into a box from trimesh and prints the change of its volume."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Deforms triangle meshes through divergence-free vector fields, so that volume is kept by construction.
+"""Volume-preserving deformation of triangle meshes through divergence-free vector fields.
 
 >>> import isochore
 >>> result = isochore.run({
@@ -9,8 +9,9 @@
 >>> abs(result.report["volume_change"]) < 1e-12
 True
 
-Coordinates and lengths are in model units, arrays are C-contiguous. Arrays that belong to a `Mesh` or a `DistanceField` are
-read-only views of its memory. The interpreter's lock is released while isochore works.
+Coordinates and lengths are in model units. Arrays are C-contiguous. Arrays of a `Mesh`, a
+`DistanceField` or a `Session` are read-only views of its memory. Long operations release the global
+interpreter lock.
 """
 
 from isochore._native import Cancelled, DistanceField, Error, Mesh, RecipeError, Session, Tool

@@ -19,33 +19,45 @@ __all__ = [
 ]
 
 _Progress = Callable[[str, float], object]
-"""Called on the calling thread every 50 ms with the stage at work and its share done, 0 to 1; returning False stops the work."""
+"""Progress callback: `progress(stage, fraction)`.
+
+`stage` names the current stage, and `fraction` is the completed part of it, 0 to 1. The calling
+thread runs it every 50 ms. Returning False cancels the operation, which then raises `Cancelled`. An
+exception raised in the callback cancels it too.
+"""
 
 class _HasVerticesAndFaces(Protocol):
-    """A mesh of another library, such as `trimesh.Trimesh`, of which `visual` is taken too, as `Mesh.from_trimesh` tells."""
+    """A mesh of another library, such as `trimesh.Trimesh`; see `Mesh.from_trimesh`."""
 
     vertices: Any
     faces: Any
 
 class Error(Exception):
-    """Input that cannot be worked with; the message names what is at fault."""
+    """Invalid input. The message names the offending element and the problem."""
 
 class RecipeError(Error):
-    """A recipe that cannot be followed."""
+    """Invalid recipe, tool description or mask."""
 
     key: str | None
-    """Dotted path of what is wrong in the recipe."""
+    """Dotted path of the offending key, such as "tools.ball.support", or None if unknown."""
     line: int | None
-    """Its line."""
+    """Line of the recipe file, from 1, or None if unknown."""
 
 class Cancelled(Error):
-    """The `progress` function asked to stop."""
+    """The `progress` callback returned False."""
 
 @final
 class Mesh:
-    """A triangle mesh. It never changes: its arrays are read-only views, which keep it alive.
+    """An immutable triangle mesh with V vertices and T triangles.
 
-    It can be pickled, with all that a file said of it, and so be sent to other processes.
+    Its arrays are read-only views of its memory and keep it alive. A mesh can be pickled with all
+    its attributes and the metadata of its file.
+
+    >>> import isochore
+    >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> mesh = isochore.Mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    >>> mesh.is_closed, round(mesh.volume, 4)
+    (True, 0.1667)
     """
 
     def __new__(
@@ -63,58 +75,91 @@ class Mesh:
     ) -> Self:
         """Copies the arrays.
 
-        positions: (V, 3) numbers, model units. triangles: (T, 3) integers, counter-clockwise seen from outside.
-        uvs: sets of texture coordinates, (T, 3, 2) each, by corner, so that seams do not open the surface, kept in single precision.
-        normals: for shading, by corner, (T, 3, 3), of any length; they turn with the surface and are kept in single precision too.
-        colors: by vertex, (V, 4), linear RGBA, 0 to 1. corner_colors: by corner, (T, 3, 4), where they differ across seams.
-        skin: joints (V, K), integers, and their weights (V, K), which are divided by the sum of each row; weight 0 is for places not used.
-        materials: names; an empty one stands for triangles without a material. triangle_materials: (T,) indices into them; each needs
-        the other.
+        positions: (V, 3) numbers, model units.
+        triangles: (T, 3) integers, counter-clockwise as seen from outside.
+        uvs: sets of texture coordinates per corner, (T, 3, 2) each, stored as float32. Seams do not
+            open the surface.
+        normals: shading normals per corner, (T, 3, 3), of any nonzero length, stored as float32.
+            They rotate with the surface.
+        colors: (V, 4), linear RGBA per vertex, 0 to 1.
+        corner_colors: (T, 3, 4), linear RGBA per corner, 0 to 1. They may differ across seams.
+        skin: joints (V, K), integers, and weights (V, K). Each row of weights is normalized. Weight
+            0 marks an unused entry.
+        materials: names of materials. An empty name means no material. Requires
+            `triangle_materials`.
+        triangle_materials: (T,) indices into `materials`.
+
+        Raises ValueError if an array has the wrong shape, type or range, and Error if an index is
+        out of range or a position is not finite.
         """
 
     @classmethod
     def read(cls, path: str | PathLike[str]) -> Mesh:
-        """Reads a mesh file: .obj .gltf .glb .ply .stl .off. Polygons are triangulated, seams welded."""
+        """Reads a mesh file: .obj, .gltf, .glb, .ply, .stl or .off.
+
+        Polygons are triangulated and seams are welded.
+
+        Raises OSError if the file cannot be read and Error if its content is invalid.
+        """
 
     @classmethod
     def from_bytes(cls, data: bytes, format: str) -> Mesh:
-        """Reads the bytes of a mesh file; `format` is its extension."""
+        """Reads the content of a mesh file. `format` is its extension, such as "ply".
+
+        Raises ValueError if the format is unknown and Error if the content is invalid.
+        """
 
     @classmethod
     def from_trimesh(cls, mesh: _HasVerticesAndFaces) -> Mesh:
-        """The mesh of a `trimesh.Trimesh`, or of anything with `vertices` (V, 3) and `faces` (T, 3).
+        """Converts a `trimesh.Trimesh`, or any object with `vertices` (V, 3) and `faces` (T, 3).
 
-        Where its `visual` has a texture or colors, texture coordinates, colors and names of materials come along, and vertices that
-        trimesh has twice at a seam are welded, so that the surface is closed; the numbers of vertices after them change then. Images
-        and normals stay behind: trimesh derives normals from faces.
+        If its `visual` has a texture or colors, the result has the texture coordinates, the colors
+        and the names of the materials. trimesh duplicates vertices at seams; they are welded, which
+        closes the surface and changes vertex indices. Images and normals are not converted: trimesh
+        derives normals from faces.
+
+        Raises TypeError if `mesh` has no `vertices` and `faces`.
         """
 
     def to_trimesh(self) -> Any:
-        """A `trimesh.Trimesh` of the same triangles in the same order.
+        """Converts to a `trimesh.Trimesh` with the same triangles in the same order.
 
-        The first set of texture coordinates, colors, in 8 bits, and names of materials come along. Vertices are the same in the same
-        order, followed by copies of those at seams, which trimesh needs: `from_trimesh` welds them. Give the visual its images anew:
-        `result.visual.material = scan.visual.material`.
+        The result has the first set of texture coordinates, the colors in 8 bits, and the names of
+        the materials. The vertices keep their order and are followed by the duplicates at seams
+        that trimesh needs; `from_trimesh` welds them again. Images are not converted. Assign them
+        afterwards: `result.visual.material = scan.visual.material`.
         """
 
     def welded(self) -> Mesh:
-        """The same surface with the vertices of open edges made one where they are at the same position.
+        """Returns the same surface with the coincident vertices of open edges merged.
 
-        Closed surfaces that touch stay apart. Colors that differ move to the corners; of differing skins the first one stays.
+        Closed surfaces that touch each other remain separate. Colors that differ are moved to the
+        corners. Of skins that differ, the first is kept.
         """
 
     def split_at_seams(self) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
-        """What libraries and renderers need that keep all attributes by vertex: one for each combination of UVs, normals and colors.
+        """Splits vertices for renderers and libraries that store all attributes per vertex.
 
-        The vertex of this mesh that each of these is, (R,), and triangles (T, 3) of them. The first V are the vertices of the mesh.
-        An attribute by corner goes to them by `values[triangles] = mesh.uvs[0]`.
+        Returns `vertices` (R,), the vertex of this mesh for each split vertex, and `triangles`
+        (T, 3), indices of split vertices. There is one split vertex for each combination of UVs,
+        normals and colors at a vertex. The first V are the vertices of this mesh. To convert a
+        corner attribute, write `values[triangles] = mesh.uvs[0]`.
         """
 
     def write(self, path: str | PathLike[str]) -> None:
-        """Writes a mesh file in the format of its extension, whole or not at all."""
+        """Writes a mesh file in the format that the extension selects.
+
+        An existing file is replaced only when the new one is complete.
+
+        Raises OSError if the file cannot be written and Error if the format cannot represent the
+        mesh.
+        """
 
     def to_bytes(self, format: str) -> bytes:
-        """The bytes of a mesh file; `format` is its extension."""
+        """Returns the content of a mesh file. `format` is its extension, such as "ply".
+
+        Raises ValueError if the format is unknown and Error if it cannot represent the mesh.
+        """
 
     @property
     def positions(self) -> NDArray[np.float64]:
@@ -122,60 +167,76 @@ class Mesh:
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
-        """(T, 3) vertex indices, counter-clockwise seen from outside; a view."""
+        """(T, 3) vertex indices, counter-clockwise as seen from outside; a view."""
 
     @property
     def uvs(self) -> list[NDArray[np.float32]]:
-        """Sets of texture coordinates by corner, (T, 3, 2) each, in single precision; views."""
+        """Sets of texture coordinates per corner, (T, 3, 2) each; views."""
 
     @property
     def normals(self) -> NDArray[np.float32] | None:
-        """Shading normals by corner, (T, 3, 3), unit length, in single precision; a view."""
+        """(T, 3, 3), unit shading normals per corner, or None if the mesh has none; a view."""
 
     @property
     def colors(self) -> NDArray[np.float64] | None:
-        """(V, 4), linear RGBA by vertex; a view."""
+        """(V, 4), linear RGBA per vertex, or None if the mesh has no vertex colors; a view."""
 
     @property
     def corner_colors(self) -> NDArray[np.float64] | None:
-        """(T, 3, 4), linear RGBA by corner, where colors differ across seams; a view."""
+        """(T, 3, 4), linear RGBA per corner, or None if the mesh has no corner colors; a view."""
 
     @property
     def materials(self) -> list[str]:
-        """Names; an empty one stands for triangles without a material."""
+        """Names of the materials. An empty name means no material."""
 
     @property
     def triangle_materials(self) -> NDArray[np.uint32] | None:
-        """(T,) indices into `materials`; a view."""
+        """(T,) indices into `materials`, or None if the mesh has no materials; a view."""
 
     @property
     def skin(self) -> tuple[NDArray[np.uint32], NDArray[np.float64]] | None:
-        """Joints (V, K) and their weights (V, K), where K is the most that a vertex has; rows sum to 1, or to 0 without joints. A copy."""
+        """Joints (V, K) and weights (V, K), or None if the mesh has no skin; copies.
+
+        K is the largest number of joints of any vertex. Each row of weights sums to 1, or to 0 for
+        a vertex without joints.
+        """
 
     @property
     def volume(self) -> float:
-        """Signed volume, cubic model units; means little unless `is_closed`."""
+        """Signed volume, cubic model units. Meaningful only if `is_closed`."""
 
     @property
     def area(self) -> float:
-        """Square model units."""
+        """Surface area, square model units."""
 
     @property
     def bounds(self) -> NDArray[np.float64]:
-        """(2, 3), smallest and largest x, y, z, model units."""
+        """Axis-aligned bounding box, (2, 3): minimum and maximum of x, y, z, model units."""
 
     @property
     def is_closed(self) -> bool:
-        """Whether every edge lies between two triangles that agree on which side is outside."""
+        """Whether every edge has exactly two triangles with consistent orientation."""
 
     def __copy__(self) -> Mesh: ...
     def __deepcopy__(self, memo: Any, /) -> Mesh: ...
     def self_intersections(self, *, progress: _Progress | None = None) -> NDArray[np.uint32]:
-        """Indices of the triangles that intersect others, by exact arithmetic, in ascending order."""
+        """Returns the indices of the triangles that intersect other triangles, in ascending order.
+
+        The test uses exact arithmetic.
+        """
 
 @final
 class DistanceField:
-    """Signed distances to a mesh on a grid, negative inside, and the cubic spline through them."""
+    """Signed distances to a mesh on a grid, negative inside, with cubic interpolation.
+
+    >>> import isochore
+    >>> shape = {"kind": "icosphere", "radius": 1.0, "subdivisions": 3}
+    >>> ball = isochore.run({"recipe": 1, "target": {"shape": shape}, "stroke": []}).mesh
+    >>> field = isochore.DistanceField(ball, resolution=32)
+    >>> distances, gradients = field([[0, 0, 0.5], [0, 0, 1.25]])
+    >>> [round(distance, 1) for distance in distances.tolist()], gradients.shape
+    ([-0.5, 0.2], (2, 3))
+    """
 
     def __new__(
         cls,
@@ -186,15 +247,20 @@ class DistanceField:
         band: float = ...,
         progress: _Progress | None = None,
     ) -> Self:
-        """Samples the distance to `mesh`.
+        """Samples the signed distance to `mesh`.
 
-        resolution: cells on the longest side of the mesh. padding: model units around it, by default eight cells.
-        band: how far from the surface distances are told apart, model units, by default everywhere.
+        resolution: number of cells along the longest side of the mesh, without the padding; at
+            least 4.
+        padding: margin around the mesh, model units; eight cells by default.
+        band: largest distance that is computed, model units. Samples farther from the surface have
+            this distance. Unlimited by default.
+
+        Raises Error if the mesh or an option cannot be used.
         """
 
     @property
     def samples(self) -> NDArray[np.float32]:
-        """Indexed [z, y, x], model units; a view."""
+        """Samples indexed [z, y, x], model units; a view."""
 
     @property
     def origin(self) -> list[float]:
@@ -206,18 +272,26 @@ class DistanceField:
 
     @property
     def sample_error(self) -> float:
-        """No sample is farther from the exact distance than this, model units."""
+        """Bound on the error of a sample, model units."""
 
     def __call__(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Distances (N,) at points (N, 3), and the gradients (N, 3) of the very spline that gives them.
+        """Returns the distances (N,) and their gradients (N, 3) at points (N, 3).
 
-        At the border of the grid the spline bends: eight cells inside, the gradient is off by 3e-5 at most because of it.
-        Beyond the grid the distance is infinite and the gradient zero.
+        The gradients are those of the spline that gives the distances. Beyond the grid, distances
+        are infinite and gradients are zero. The border of the grid disturbs the spline: eight cells
+        inside the grid, the resulting error of the gradient is at most 3e-5.
         """
 
 @final
 class Tool:
-    """A tool ready to work, made once and shared between strokes and sessions."""
+    """A prepared tool. It can be used by any number of strokes and sessions.
+
+    >>> import isochore
+    >>> shape = {"kind": "sphere", "radius": 0.1}
+    >>> brush = isochore.Tool({"shape": shape, "support": 0.2}, name="brush")
+    >>> brush.name, brush.warnings
+    ('brush', [])
+    """
 
     def __new__(
         cls,
@@ -227,28 +301,52 @@ class Tool:
         mesh: Mesh | _HasVerticesAndFaces | None = None,
         progress: _Progress | None = None,
     ) -> Self:
-        """Makes a tool from what a recipe says of one: {"shape": {"kind": "sphere", "radius": 0.1}, "support": 0.1}.
+        """Creates a tool from its description in a recipe.
 
-        name: what the log calls it. mesh: the mesh of a shape of the kind "mesh", whose distance is sampled now.
+        description: such as {"shape": {"kind": "sphere", "radius": 0.1}, "support": 0.1}.
+        name: name of the tool in the log of a session.
+        mesh: mesh of a shape of kind "mesh". Its distance is sampled during this call.
+
+        Raises RecipeError if the description is invalid.
         """
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name of the tool in the log of a session."""
+
     @property
     def warnings(self) -> list[str]:
-        """What there is to know about how the description was understood."""
+        """Warnings about the description."""
 
 @final
 class Session:
-    """A mesh that strokes deform one after the other, at the pace of a frame, with undo and redo.
+    """A mesh that strokes deform one after another at interactive rates, with undo and redo.
 
-    First come the vertices of the mesh as opened, which keep their numbers, then inserted ones. Where one of these was removed, a later
-    stroke may give its number to another. The buffers hold render vertices: a
-    vertex as the triangles on one side of a seam see it. Render vertex i is vertex i of the mesh as opened as long as there are that
-    many.
+    Vertices of the opened mesh keep their numbers. Inserted vertices follow. A later stroke may
+    reuse the number of a vertex that an earlier stroke has removed.
 
-    `positions`, `normals`, `uvs`, `colors` and `triangles` are views of the session's own buffers. While one is held the session does
-    not change: strokes, undo and redo raise BufferError until it is dropped.
+    The buffers `positions`, `normals`, `uvs`, `colors` and `triangles` are for rendering. They hold
+    R render vertices: a render vertex is a vertex as seen by the triangles on one side of a seam.
+    Render vertex i is vertex i of the opened mesh for each of its vertices.
+
+    The buffers are views of the memory of the session. While a view exists, the session cannot
+    change: strokes, undo and redo raise BufferError.
+
+    >>> import isochore
+    >>> shape = {"kind": "icosphere", "radius": 1.0, "subdivisions": 4}
+    >>> ball = isochore.run({"recipe": 1, "target": {"shape": shape}, "stroke": []}).mesh
+    >>> session = isochore.Session(ball)
+    >>> ball_shape = {"kind": "sphere", "radius": 0.2}
+    >>> session.begin_stroke(isochore.Tool({"shape": ball_shape, "support": 0.3}))
+    >>> moves = [session.move_to([0, 0, 1.2 - 0.05 * step]) for step in range(4)]
+    >>> receipt = session.end_stroke()
+    >>> receipt["moves"], receipt["touched_vertices"] > 0
+    (3, True)
+    >>> mesh, vertices = session.export()
+    >>> abs(mesh.volume / ball.volume - 1) < 1e-12
+    True
+    >>> session.undo()
+    True
     """
 
     def __new__(
@@ -261,15 +359,22 @@ class Session:
         mask: ArrayLike | Mapping[str, Any] | None = None,
         lock: bool = True,
     ) -> Self:
-        """Opens a session on a manifold, oriented mesh.
+        """Opens a session on a manifold, consistently oriented mesh.
 
-        step: travel of the fastest point of the tool's surface in one time step, as a share of the support or of half the tool's
-        shortest extent, whichever is less; at most 1.
-        undo_bytes: what undo and redo may hold; beyond, the oldest strokes are forgotten. normals: how triangles are weighted in vertex
-        normals, by "area" or "angle".
-        mask: a weight for each vertex, (V,), from 0, free, to 1, held; or what a recipe says under `mask`, {"pins": [...], "mirror": [...],
-        "vertices": weights, "fade": length}. Vertices that are held keep their bits.
-        lock: whether each stroke ends with the volume of the mesh as opened, by a small displacement of what it has moved.
+        step: time step, given as the distance that the fastest point of the tool surface travels in
+            one step. It is a fraction, at most 1, of the support or of half the shortest extent of
+            the tool, whichever is smaller.
+        undo_bytes: memory budget of undo and redo. Beyond it, the oldest strokes are removed from
+            the history.
+        normals: weighting of triangles in vertex normals, by "area" or "angle".
+        mask: weights (V,) from 0 (free) to 1 (masked), or the `mask` table of a recipe: {"pins":
+            [...], "mirror": [...], "vertices": weights, "fade": length}. Vertices of weight 1 keep
+            their exact positions.
+        lock: whether each stroke ends with the volume lock, a small displacement of the moved
+            vertices that restores the volume of the opened mesh.
+
+        Raises Error if the mesh or an option cannot be used, RecipeError if the mask table is
+        invalid, and ValueError if an argument has the wrong shape.
         """
 
     def begin_stroke(
@@ -281,48 +386,78 @@ class Session:
         max_triangles: int | None = None,
         keep: Sequence[tuple[ArrayLike, float]] = ...,
     ) -> None:
-        """Begins a stroke; nothing moves before the second pose.
+        """Begins a stroke. The first pose only places the tool; later ones move it.
 
-        refine: whether edges in the tool's reach are split, collapsed and flipped. longest_edge: longer ones are split, model units.
-        keep: balls, by center (3,) and radius, in which the triangles stay as they are.
+        refine: whether edges in reach of the tool are split, collapsed and flipped.
+        longest_edge: edges longer than this are split, model units.
+        max_triangles: splits stop at this number of triangles.
+        keep: balls, given by center (3,) and radius, in which triangles are not refined.
+
+        Raises Error if a stroke is in progress.
         """
 
     def freeze_edges(self, vertices: ArrayLike) -> None:
-        """Keeps the edges at these vertices (N,), inserted ones included, from being split, collapsed or flipped, and frees all others."""
+        """Excludes the edges at the given vertices (N,) from splits, collapses and flips.
+
+        The vertices replace those of the previous call and may include inserted ones. Raises
+        ValueError if one is out of range.
+        """
 
     def move_to(
         self, at: ArrayLike, *, rotate: ArrayLike = ..., time: float = 0.0
     ) -> dict[str, Any]:
-        """Moves the tool along a screw to a pose: `at` (3,), model units; `rotate` axis x, y, z and degrees, absolute.
+        """Moves the tool to a pose along a screw motion.
 
-        time: seconds of the host's clock, for the log of the receipt alone. Returns what was moved, inserted, removed and flipped.
+        at: position (3,), model units.
+        rotate: axis x, y, z and angle in degrees, (4,), relative to the unrotated tool.
+        time: time of the host in seconds, not less than that of the previous move. It affects only
+            the receipt.
+
+        Returns `moved_vertices`, `inserted_vertices`, `removed_vertices`, `flipped_edges`,
+        `is_limited` (whether `max_triangles` prevented splits), `refused_splits` (edges that remain
+        too long because the stroke has distorted the surface too much for a split to help) and
+        `seconds`.
+
+        Raises Error if no stroke is in progress, and ValueError if a number is not finite or the
+        axis is zero.
         """
 
     def end_stroke(self) -> dict[str, Any]:
-        """Ends the stroke; its receipt, with signed changes of volume by the flow, by splits and by remeshing apart.
+        """Ends the stroke, applies the volume lock, and returns the receipt of the stroke.
 
-        lock_max_shift: the longest displacement by the lock, model units; None where it was skipped. lock_skipped: why it was: "off",
-        the session has none; "needs_closed", the surface is open; "no_hold", nothing moved that the volume depends on, and the lock of
-        the next stroke has to make up for what is missing. None where it acted.
+        The receipt has the counts of all moves and these keys:
+
+        volume: signed volume changes by "flow", "splits" and "remeshing", and a bound on their
+            "rounding" error, cubic model units; None if the surface is open.
+        lock_max_shift: largest displacement by the volume lock, model units, or None if the lock
+            was skipped.
+        lock_skipped: None if the lock was applied. Otherwise "off" (disabled), "needs_closed" (the
+            surface is open) or "no_hold" (the moved vertices cannot change the volume, and the lock
+            of the next stroke corrects the remaining error).
+
+        Raises Error if no stroke is in progress.
         """
 
     def cancel_stroke(self) -> None:
-        """Takes back the stroke under way."""
+        """Discards the stroke in progress. Raises Error if no stroke is in progress."""
 
     def undo(self) -> bool:
-        """Takes back the last stroke, to the bit; False where there is none."""
+        """Undoes the last stroke, bit for bit. Returns False if there is none."""
 
     def redo(self) -> bool:
-        """Does again what was undone last, to the bit; False where there is nothing."""
+        """Redoes the last undone stroke, bit for bit. Returns False if there is none."""
 
     def log(self) -> dict[str, Any]:
-        """All strokes that are done, as a recipe for `run` and `run_points`, on this mesh (its name is "target") or any other."""
+        """Returns the strokes that are in effect as a recipe, which names its target "target"."""
 
     def export(self, *, lock: bool = True) -> tuple[Mesh, NDArray[np.uint32]]:
-        """The surface as a mesh, as `positions` show it, and the number (V,) in the session of each of its vertices.
+        """Copies the surface to a mesh.
 
-        lock: with what the lock has added at the end of each stroke, which keeps the volume; without it vertices are where the flow
-        alone has taken them, to the bits that the log gives elsewhere.
+        Returns the mesh and the session vertex of each of its vertices.
+
+        lock: whether positions include the displacements of the volume lock, as the buffers do.
+            Otherwise they are those of the flow alone, which a replay of the log reproduces bit for
+            bit.
         """
 
     @property
@@ -339,31 +474,42 @@ class Session:
 
     @property
     def colors(self) -> NDArray[np.float32]:
-        """(R, 4), linear RGBA, or (0, 4) where the mesh has none; a view."""
+        """(R, 4), linear RGBA, or (0, 4) if the mesh has no colors; a view."""
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
-        """(T, 3) render vertices; those removed are three times zero; a view."""
+        """(T, 3) render vertices, three zeros for a removed triangle; a view."""
 
     def take_changes(self) -> dict[str, Any]:
-        """What has changed in the buffers since the last call, at first everything: pairs (start, end) of rows by buffer.
+        """Returns the buffer ranges that have changed since the previous call.
 
-        `attributes` stands for UVs, colors and origins. Give copies the buffers' lengths first, then copy the rows.
+        The first call returns everything.
+
+        The keys "positions", "normals", "attributes" and "triangles" have lists of half-open ranges
+        (start, end) of rows. "attributes" covers UVs, colors and origins. "generation" increases
+        whenever a buffer has moved in memory. To update copies, resize them to the lengths of the
+        buffers first, then copy the rows.
         """
 
     def pick(self, origin: ArrayLike, direction: ArrayLike) -> dict[str, Any] | None:
-        """The first point of the surface on a ray: `point`, `normal`, `distance`, `triangle`, `vertices`.
+        """Finds the first point of the surface along a ray.
 
-        `weights` are its barycentric coordinates: how much each of the three vertices counts for it.
+        Returns None if the ray misses the surface.
+
+        The result has `point`, `normal`, `triangle`, `vertices`, `weights` (the barycentric
+        coordinates of the point) and `distance`, in multiples of the length of `direction`.
         """
 
     def closest_point(self, point: ArrayLike) -> dict[str, Any] | None:
-        """The nearest point of the surface, as `pick` tells of it."""
+        """Finds the closest point of the surface, or None if the mesh has no triangles.
+
+        The result has the keys of `pick`, with `distance` in model units.
+        """
 
     def vertices_in_reach(self, tool: Tool, at: ArrayLike, *, rotate: ArrayLike = ...) -> NDArray[np.uint32]:
-        """Numbers (N,) of the vertices that a stroke of the tool would move at this pose, in ascending order.
+        """Returns the vertices (N,) that the tool would move at this pose, in ascending order.
 
-        They count as reached where the flow has left them, without what the lock has added, and masks are not looked at.
+        The test ignores masks and uses positions without the displacements of the volume lock.
         """
 
     def preview(
@@ -376,45 +522,52 @@ class Session:
         end_rotate: ArrayLike = ...,
         per_side: int = 12,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Points (N, 3) around the tool, and where a move from `start` to `end` would shift them, (N, 3): arrows to draw."""
+        """Returns points (N, 3) and their displacements (N, 3) by a move, for display as arrows.
+
+        per_side: number of points along the longest side of the support, at most 64.
+        """
 
     @property
     def moved_volume(self) -> tuple[float, float]:
-        """Volume that the stroke under way has moved outward and inward so far, cubic model units."""
+        """Volumes that the stroke in progress has moved outward and inward, cubic model units."""
 
     @property
     def is_stroke_under_way(self) -> bool:
-        """Whether a stroke has begun and not ended."""
+        """Whether a stroke is in progress."""
 
     @property
     def volume(self) -> float | None:
-        """Volume inside the surface; None where it is open."""
+        """Enclosed volume before any lock, cubic model units, or None if the surface is open."""
 
     @property
     def history(self) -> dict[str, int]:
-        """Strokes `undoable`, `redoable` and `forgotten`, and `bytes` held for them."""
+        """Numbers of `undoable`, `redoable` and `forgotten` strokes, and their `bytes`."""
 
     def origins(self) -> tuple[NDArray[np.uint32], NDArray[np.float64]]:
-        """Where on the mesh as opened render vertices take their attributes from: triangles (R,) and barycentric coordinates (R, 3).
+        """Returns the points of the opened mesh that provide the attributes of the render vertices.
 
-        A vertex without triangles has the triangle 2**32 - 1 and coordinates of zero.
+        These are triangles (R,) of the opened mesh and barycentric coordinates (R, 3). A vertex
+        without triangles has the triangle 2**32 - 1 and zeros.
         """
 
     def vertex_map(self) -> NDArray[np.uint32]:
-        """For each vertex of the mesh as opened, (V,), the vertex that stands in its place: itself, or what collapses merged it into."""
+        """Returns the vertices (V,) that represent those of the opened mesh.
+
+        Each is the vertex itself, or the vertex that collapses have merged it into.
+        """
 
     def vertices_of_render_vertices(self) -> NDArray[np.uint32]:
-        """Number (R,) of the vertex of each render vertex; 2**32 - 1 where it was removed."""
+        """Returns the vertex of each render vertex, (R,), or 2**32 - 1 if it has been removed."""
 
 class Result(NamedTuple):
-    """What became of a recipe's target."""
+    """Result of a recipe."""
 
     mesh: Mesh
-    """The mesh, refined and deformed."""
+    """The deformed mesh, refined where necessary."""
     rest: Mesh
-    """The same triangles before the strokes."""
+    """The same triangles before deformation."""
     report: dict[str, Any]
-    """The report; its schema is that of the command's (`isochore schema report`)."""
+    """The report. Its schema is that of the command: `isochore schema report`."""
 
 def run(
     recipe: str | PathLike[str] | Mapping[str, Any],
@@ -423,13 +576,22 @@ def run(
     settings: Mapping[str, Any] | Iterable[str] = (),
     progress: _Progress | None = None,
 ) -> Result:
-    """Deforms the target of a recipe, as `isochore run` does, and writes no file.
+    """Deforms the target of a recipe like the command `isochore run`, but writes no files.
 
-    recipe: path of a TOML or JSON file, or its keys. meshes: meshes by the names that the recipe gives them, in place of files;
-    what is not among them is read, relative to the recipe. settings: win over the recipe, {"refine.volume": 1e-5}.
+    recipe: path of a TOML or JSON file, or a mapping with the keys of a recipe.
+    meshes: meshes by the names that the recipe uses. All other meshes are read from files relative
+        to the recipe.
+    settings: override keys of the recipe: {"refine.volume": 1e-5} or ["refine.volume=1e-5"].
 
-    Raises RecipeError where the recipe cannot be followed, Error where a mesh cannot be worked with, OSError where a file cannot be
-    read, Cancelled where `progress` returned False.
+    Raises RecipeError if the recipe is invalid, Error if a mesh cannot be used, OSError if a file
+    cannot be read, and Cancelled if `progress` returned False.
+
+    >>> import isochore
+    >>> twist = {"kind": "twist", "origin": [0, 0, 0], "axis": [0, 0, 1], "degrees_per_unit": 30.0}
+    >>> shape = {"kind": "box", "half_extents": [0.5, 0.5, 1], "segments": [4, 4, 8]}
+    >>> result = isochore.run({"recipe": 1, "target": {"shape": shape}, "stroke": [twist]})
+    >>> abs(result.mesh.volume - 2) < 1e-12
+    True
     """
 
 def run_points(
@@ -440,7 +602,18 @@ def run_points(
     settings: Mapping[str, Any] | Iterable[str] = (),
     progress: _Progress | None = None,
 ) -> tuple[NDArray[np.float64], list[str]]:
-    """Carries points (N, 3), model units, along the strokes of a recipe: where they come to, (N, 3), and warnings.
+    """Advects points (N, 3), model units, along the strokes of a recipe.
 
-    Points have no surface and no volume: there is no refinement and no lock, and stamps are refused.
+    Returns the advected points (N, 3) and warnings.
+
+    The arguments are those of `run`. Points have neither a surface nor a volume, so refinement and
+    the volume lock do not apply, and a recipe with a stamp raises RecipeError.
+
+    >>> import isochore
+    >>> twist = {"kind": "twist", "origin": [0, 0, 0], "axis": [0, 0, 1], "degrees_per_unit": 90.0}
+    >>> shape = {"kind": "box", "half_extents": [0.5, 0.5, 1], "segments": [4, 4, 8]}
+    >>> recipe = {"recipe": 1, "target": {"shape": shape}, "stroke": [twist]}
+    >>> points, warnings = isochore.run_points(recipe, [[1, 0, 1]])
+    >>> points.round(6).tolist()
+    [[0.0, 1.0, 1.0]]
     """

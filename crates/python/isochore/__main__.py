@@ -1,4 +1,4 @@
-"""`python -m isochore`: starts the command that was installed with this package."""
+"""`python -m isochore` runs the command `isochore` that was installed with this package."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ def main():
         if os.path.isfile(command):
             break
     else:
-        sys.exit(f"error: the command {name} is not where this Python keeps its scripts; install the package again")
+        sys.exit(f"error: {name} is missing from the scripts folder of this Python; reinstall the package")
     if sys.platform == "win32":
         sys.exit(subprocess.run([command, *sys.argv[1:]]).returncode)
     os.execv(command, [command, *sys.argv[1:]])

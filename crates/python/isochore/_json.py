@@ -1,4 +1,4 @@
-"""Plain data as JSON, with NumPy arrays in the place of lists."""
+"""Conversion of Python data, including NumPy arrays, to JSON."""
 
 import json
 from collections.abc import Mapping
@@ -7,11 +7,11 @@ import numpy as np
 
 
 def to_json(data):
-    """The text of `data`. Infinite numbers and those that are none have no place in it: ValueError."""
+    """Converts `data` to JSON. Raises ValueError if a number is not finite."""
     try:
         return json.dumps(data, default=_plain, allow_nan=False)
-    except ValueError as problem:
-        raise ValueError(f"the numbers of a recipe must be finite: {problem}") from None
+    except ValueError as error:
+        raise ValueError(f"numbers in a recipe must be finite: {error}") from None
 
 
 def _plain(value):
@@ -19,4 +19,4 @@ def _plain(value):
         return dict(value)
     if isinstance(value, (np.ndarray, np.generic)):
         return value.tolist()
-    raise TypeError(f"a recipe has no place for a {type(value).__name__}")
+    raise TypeError(f"a recipe cannot contain a value of type {type(value).__name__}")

@@ -1,4 +1,4 @@
-"""Recipes with the files that they name."""
+"""Recipes and the files that they name."""
 
 import csv
 import json
@@ -12,7 +12,7 @@ from isochore._native import Error, LoadedRecipe, Mesh
 
 
 class Result(NamedTuple):
-    """What became of a recipe's target."""
+    """Result of a recipe."""
 
     mesh: Mesh
     rest: Mesh
@@ -27,13 +27,13 @@ def run(recipe, *, meshes=None, settings=(), progress=None):
 
 
 def run_points(recipe, points, *, meshes=None, settings=(), progress=None):
-    """Carries points along the strokes of a recipe. See the type stubs for the arguments."""
+    """Advects points along the strokes of a recipe. See the type stubs for the arguments."""
     loaded, files = _load(recipe, meshes or {}, settings)
     return loaded.replay_points(points, *files, progress)
 
 
 def parse(recipe, settings):
-    """The recipe, and the folder from which its names are paths."""
+    """Parses a recipe. Returns it with the folder that its file names are relative to."""
     if isinstance(recipe, Mapping):
         folder, text, is_json = pathlib.Path(), to_json(recipe), True
     else:
@@ -43,14 +43,14 @@ def parse(recipe, settings):
 
 
 def setting_texts(settings):
-    """Settings, which may be a mapping, as texts KEY=VALUE."""
+    """Converts settings, which may be a mapping, to strings KEY=VALUE."""
     if isinstance(settings, Mapping):
         return [f"{key}={to_json(value)}" for key, value in settings.items()]
     return [str(setting) for setting in settings]
 
 
 def _load(recipe, meshes, settings):
-    """The recipe, and what its names stand for: meshes, curves and the weights of its mask."""
+    """Parses a recipe and reads its meshes, its curves and the weights of its mask."""
     loaded, folder = parse(recipe, settings)
     found = {name: meshes[name] if name in meshes else Mesh.read(folder / name) for name in loaded.mesh_names}
     curves = {name: [row[:3] for row in _rows(folder / name, (3, 6))] for name in loaded.curve_names}
@@ -61,17 +61,20 @@ def _load(recipe, meshes, settings):
 
 
 def _rows(path, columns):
-    """Rows of numbers of a comma-separated file; a first row without numbers is a header, lines with # are skipped."""
+    """Reads rows of numbers from a comma-separated file.
+
+    A first row without any number is a header. Lines that begin with # are skipped.
+    """
     rows = []
     with open(path, encoding="utf-8-sig", newline="") as file:
         lines = (line for line in file if line.strip() and not line.lstrip().startswith("#"))
         for number, cells in enumerate(csv.reader(lines), 1):
             try:
                 row = [float(cell) for cell in cells]
-            except ValueError as problem:
+            except ValueError as error:
                 if number == 1 and not any(map(_is_number, cells)):
                     continue
-                raise Error(f"{path}: row {number}: {problem}") from None
+                raise Error(f"{path}: row {number}: {error}") from None
             if len(row) not in columns:
                 allowed = " or ".join(map(str, columns))
                 raise Error(f"{path}: row {number} has {len(row)} columns, not {allowed}")

@@ -1,7 +1,7 @@
-"""Meshes from trimesh and to it, with texture coordinates, colors and materials.
+"""Conversion from and to trimesh, with texture coordinates, colors and materials.
 
-trimesh keeps these by vertex, so that its meshes have vertices twice at seams: they are welded on the way in, which closes the
-surface, and split on the way out.
+trimesh stores these per vertex, so its meshes have duplicate vertices at seams. Duplicates are
+welded when a mesh is imported, which closes the surface, and split again when it is exported.
 """
 
 import numpy as np
@@ -10,28 +10,28 @@ from isochore._native import Mesh
 
 
 def from_trimesh(other):
-    """The mesh of an object with `vertices` and `faces`, and with what its `visual` says where it has one."""
+    """Converts an object with `vertices`, `faces` and an optional `visual`."""
     if not (hasattr(other, "vertices") and hasattr(other, "faces")):
-        raise TypeError(f"a mesh, or what has vertices and faces, is wanted, not {type(other).__name__}")
+        raise TypeError(f"expected a mesh or an object with vertices and faces, not {type(other).__name__}")
     faces = np.asarray(other.faces)
     visual = getattr(other, "visual", None)
     kind = getattr(visual, "kind", None)
     if kind == "texture":
-        given = {**_uvs(visual, faces), **_materials(visual, len(faces))}
+        attributes = {**_uvs(visual, faces), **_materials(visual, len(faces))}
         if (colors := visual.vertex_attributes.get("color")) is not None:
-            given["colors"] = _rgba(colors)
+            attributes["colors"] = _rgba(colors)
     elif kind == "vertex":
-        given = {"colors": _rgba(visual.vertex_colors)}
+        attributes = {"colors": _rgba(visual.vertex_colors)}
     elif kind == "face":
-        given = {"corner_colors": _rgba(visual.face_colors)[:, None].repeat(3, axis=1)}
+        attributes = {"corner_colors": _rgba(visual.face_colors)[:, None].repeat(3, axis=1)}
     else:
-        # Nothing that may differ across a seam.
+        # No attribute can differ across a seam, so there are no duplicates to weld.
         return Mesh(other.vertices, faces)
-    return Mesh(other.vertices, faces, **given).welded()
+    return Mesh(other.vertices, faces, **attributes).welded()
 
 
 def to_trimesh(mesh):
-    """See the type stubs."""
+    """Converts to a `trimesh.Trimesh`. See the type stubs."""
     import trimesh
     from trimesh.visual import ColorVisuals, TextureVisuals
 
@@ -71,7 +71,7 @@ def _materials(visual, count):
     several = getattr(visual.material, "materials", None)
     names = [material.name or "" for material in (several or [visual.material])]
     numbers = np.zeros(count, int) if several is None else visual.face_materials
-    # trimesh does not cut the materials of faces when it cuts faces.
+    # trimesh keeps the material list at its old length when it removes faces.
     if not any(names) or numbers is None or len(numbers) != count:
         return {}
     return {"materials": names, "triangle_materials": numbers}
@@ -87,7 +87,7 @@ def _visual_materials(mesh):
 
 
 def _rgba(colors):
-    """Colors (N, 4) from 0 to 1, of RGB or RGBA in whole numbers or real ones."""
+    """Converts integer or floating-point RGB or RGBA to colors (N, 4) from 0 to 1."""
     colors = np.asarray(colors)
     if not np.issubdtype(colors.dtype, np.floating):
         colors = colors / np.iinfo(colors.dtype).max

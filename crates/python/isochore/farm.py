@@ -1,4 +1,4 @@
-"""Deforms many meshes by one recipe on a Dask cluster that is there already (`pip install isochore[farm]`).
+"""Deforms many meshes by one recipe on an existing Dask cluster (`pip install isochore[farm]`).
 
 >>> from dask.distributed import Client                         # doctest: +SKIP
 >>> from isochore import farm                                   # doctest: +SKIP
@@ -6,9 +6,10 @@
 ...     for target, outcome in farm.run("press.toml", sorted(scans.glob("*.ply")), "pressed", client=client):
 ...         print(target, outcome)
 
-Recipe, targets and results lie in folders that all workers see under the same path. Each mesh is one task; the cluster gives the
-tasks of a worker that dies to others. A result is written whole or not at all, the mesh first and then its report, so that what is
-finished stays finished: started again with the same files, settings and version, a run does only what is missing.
+All workers must see the recipe, the targets and the results under the same paths. Each mesh is one
+task. If a worker dies, the cluster assigns its tasks to other workers. Each result is written
+atomically, the mesh first and then its report. A run that is repeated with the same files, settings
+and version of isochore computes only the missing results.
 """
 
 import functools
@@ -37,44 +38,44 @@ def run(recipe, targets, folder, *, client, format="ply", settings=()):
     folder = pathlib.Path(os.fspath(folder)).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     targets = [pathlib.Path(os.fspath(target)).resolve() for target in targets]
-    places = [folder / f"{target.stem}.{format}" for target in targets]
-    of_place = dict(zip(places, targets))
-    if len(of_place) < len(targets):
-        other = next(target for target, place in zip(targets, places) if of_place[place] != target)
-        raise ValueError(f"{other}: another target has the same name")
-    if not set(places).isdisjoint([*targets, recipe]):
-        raise ValueError(f"{folder}: results would take the place of what they are made from")
-    # Impure: whether there is anything to do, the worker finds out from the files.
+    outputs = [folder / f"{target.stem}.{format}" for target in targets]
+    target_of = dict(zip(outputs, targets))
+    if len(target_of) < len(targets):
+        other = next(target for target, output in zip(targets, outputs) if target_of[output] != target)
+        raise ValueError(f"{other}: another target has the same name, so their results would collide")
+    if not set(outputs).isdisjoint([*targets, recipe]):
+        raise ValueError(f"{folder}: results would overwrite the recipe or a target; choose another folder")
+    # Impure: only the worker can find out from the files whether there is work to do.
     deform = functools.partial(client.submit, _deform, recipe, settings=_setting_texts(settings), pure=False)
-    tasks = {deform(target, place): target for place, target in of_place.items()}
+    tasks = {deform(target, output): target for output, target in target_of.items()}
     for task in as_completed(tasks):
         yield tasks[task], task.exception() or task.result()
 
 
-def _deform(recipe, target, place, *, settings):
-    """One task: the report, made now or found from an earlier run."""
+def _deform(recipe, target, output, *, settings):
+    """Runs one task, or finds its result from an earlier run. Returns the report."""
     settings = [*settings, f"target.mesh={json.dumps(str(target))}"]
     origin = _origin(recipe, settings)
-    account = place.with_name(place.name + ".json")
-    if place.exists() and account.exists():
-        done = json.loads(account.read_text(encoding="utf-8"))
-        # A worker may have died after it wrote another mesh, and before its report.
-        if done["origin"] == origin and done["mesh"] == _sha256(place):
+    report_file = output.with_name(output.name + ".json")
+    if output.exists() and report_file.exists():
+        done = json.loads(report_file.read_text(encoding="utf-8"))
+        # A worker may have died between writing a new mesh and writing its report.
+        if done["origin"] == origin and done["mesh"] == _sha256(output):
             return done["report"]
     result = _run(recipe, settings=settings)
-    account.unlink(missing_ok=True)
-    result.mesh.write(place)
-    done = {"origin": origin, "mesh": _sha256(place), "report": result.report}
-    _write_whole(account, json.dumps(done, indent=2))
+    report_file.unlink(missing_ok=True)
+    result.mesh.write(output)
+    done = {"origin": origin, "mesh": _sha256(output), "report": result.report}
+    _write_atomically(report_file, json.dumps(done, indent=2))
     return result.report
 
 
 def _origin(recipe, settings):
-    """What a result is made of: the version, the settings, and the SHA-256 of the recipe and of all files that it needs."""
+    """Identifies the inputs of a result: version, settings, and SHA-256 of the recipe and its files."""
     loaded, folder = _parse(recipe, settings)
     names = {*loaded.mesh_names, *loaded.curve_names, *filter(None, [loaded.weights_name])}
     named = [folder / name for name in sorted(names)]
-    # What is missing, the run itself complains of.
+    # The run itself reports missing files.
     needed = [path for path in [recipe, *named, *(part for path in named for part in _parts(path))] if path.is_file()]
     return {
         "version": importlib.metadata.version("isochore"),
@@ -84,7 +85,7 @@ def _origin(recipe, settings):
 
 
 def _parts(path):
-    """Buffers and images that a glTF file names; none where it cannot be read, which the run itself complains of."""
+    """Returns the buffers and images of a glTF file, or nothing if it is invalid, which the run reports."""
     if path.suffix.lower() not in (".gltf", ".glb") or not path.is_file():
         return []
     data = path.read_bytes()
@@ -103,8 +104,8 @@ def _sha256(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _write_whole(path, text):
-    # Not a file of `tempfile`, which nobody else may read.
+def _write_atomically(path, text):
+    # `tempfile` would create a file that only its owner can read.
     draft = path.with_name(f".isochore-{uuid.uuid4().hex}")
     try:
         draft.write_text(text, encoding="utf-8")

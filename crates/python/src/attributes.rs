@@ -1,4 +1,4 @@
-//! What a mesh carries besides its geometry, from NumPy arrays.
+//! Mesh attributes from NumPy arrays.
 
 use bytemuck::cast_slice;
 use glam::{DVec3, DVec4, Vec2};
@@ -11,7 +11,7 @@ use crate::{
     error::Failure,
 };
 
-/// One more set of texture coordinates, (T, 3, 2).
+/// Adds a set of texture coordinates, (T, 3, 2).
 pub(crate) fn add_uvs(mesh: &mut TriMesh, uvs: &Bound<'_, PyAny>) -> Result<(), Failure> {
     let uvs = contiguous::<f32>(uvs)?;
     check_shape("uvs", uvs.shape(), &[Some(mesh.triangles.len()), Some(3), Some(2)])?;
@@ -19,17 +19,17 @@ pub(crate) fn add_uvs(mesh: &mut TriMesh, uvs: &Bound<'_, PyAny>) -> Result<(), 
     Ok(())
 }
 
-/// Shading normals, (T, 3, 3), of any length.
+/// Sets shading normals of any nonzero length, (T, 3, 3).
 pub(crate) fn set_normals(mesh: &mut TriMesh, normals: &Bound<'_, PyAny>) -> Result<(), Failure> {
     let py = normals.py();
     let normals = contiguous::<f64>(normals)?;
     check_shape("normals", normals.shape(), &[Some(mesh.triangles.len()), Some(3), Some(3)])?;
-    let given: &[[DVec3; 3]] = cast_slice(numbers("normals", &normals)?);
-    let set = py.detach(|| mesh.corner.set_normals(given));
+    let corners: &[[DVec3; 3]] = cast_slice(numbers("normals", &normals)?);
+    let set = py.detach(|| mesh.corner.set_normals(corners));
     set.map_err(|error| Failure::Argument(error.to_string()))
 }
 
-/// Colors by vertex, (V, 4).
+/// Sets vertex colors, (V, 4).
 pub(crate) fn set_colors(mesh: &mut TriMesh, colors: &Bound<'_, PyAny>) -> Result<(), Failure> {
     let colors = contiguous::<f64>(colors)?;
     check_shape("colors", colors.shape(), &[Some(mesh.positions.len()), Some(4)])?;
@@ -37,7 +37,7 @@ pub(crate) fn set_colors(mesh: &mut TriMesh, colors: &Bound<'_, PyAny>) -> Resul
     Ok(())
 }
 
-/// Colors by corner, (T, 3, 4).
+/// Sets corner colors, (T, 3, 4).
 pub(crate) fn set_corner_colors(mesh: &mut TriMesh, colors: &Bound<'_, PyAny>) -> Result<(), Failure> {
     let colors = contiguous::<f64>(colors)?;
     check_shape("corner_colors", colors.shape(), &[Some(mesh.triangles.len()), Some(3), Some(4)])?;
@@ -49,7 +49,7 @@ fn rgba(name: &str, colors: &PyReadonlyArrayDyn<'_, f64>) -> Result<Vec<DVec4>, 
     Ok(finite_numbers(name, colors)?.as_chunks::<4>().0.iter().map(|c| DVec4::from(*c)).collect())
 }
 
-/// Joints and weights, (V, K) each.
+/// Sets joints and weights, (V, K) each.
 pub(crate) fn set_skin(
     mesh: &mut TriMesh,
     joints: &Bound<'_, PyAny>,
@@ -69,23 +69,23 @@ pub(crate) fn set_skin(
     })
 }
 
-/// Names of materials, and by triangle, (T,), which of them it has.
+/// Sets the names of the materials and the material index of each triangle, (T,).
 pub(crate) fn set_materials(
     mesh: &mut TriMesh,
     names: Vec<String>,
-    of_triangles: &Bound<'_, PyAny>,
+    triangle_materials: &Bound<'_, PyAny>,
 ) -> Result<(), Failure> {
-    let of_triangles = indices("triangle_materials", of_triangles)?;
-    check_shape("triangle_materials", of_triangles.shape(), &[Some(mesh.triangles.len())])?;
-    let known = |(triangle, &number): (usize, &i64)| match u32::try_from(number) {
+    let triangle_materials = indices("triangle_materials", triangle_materials)?;
+    check_shape("triangle_materials", triangle_materials.shape(), &[Some(mesh.triangles.len())])?;
+    let checked = |(triangle, &number): (usize, &i64)| match u32::try_from(number) {
         Ok(material) if (material as usize) < names.len() => Ok(material),
         _ => Err(Failure::Argument(format!(
-            "triangle_materials: triangle {triangle} has the material {number} of {}",
+            "triangle_materials: triangle {triangle} has material {number}, but there are {} materials",
             names.len()
         ))),
     };
-    let numbers = numbers("triangle_materials", &of_triangles)?;
-    mesh.triangle_materials = numbers.iter().enumerate().map(known).collect::<Result<_, _>>()?;
+    let numbers = numbers("triangle_materials", &triangle_materials)?;
+    mesh.triangle_materials = numbers.iter().enumerate().map(checked).collect::<Result<_, _>>()?;
     mesh.materials = names;
     Ok(())
 }

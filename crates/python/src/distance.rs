@@ -12,11 +12,12 @@ use crate::{
     watch::watched,
 };
 
-/// Cells around the mesh where the caller does not say. At the border of the grid the spline bends to its mirror image, which dies
-/// away by 0.27 a cell: fewer would spoil the gradient at the surface, more cost memory.
+/// Default padding, in cells. The spline reflects at the border of the grid, and the resulting
+/// error decays by a factor of 0.27 per cell. A smaller value spoils the gradient at the surface; a
+/// larger one costs memory.
 const PADDING_CELLS: usize = 8;
 
-/// Signed distances to a mesh on a grid, and the spline through them.
+/// Signed distances to a mesh on a grid, negative inside, with cubic interpolation.
 #[pyclass(frozen, module = "isochore")]
 #[derive(Debug)]
 pub(crate) struct DistanceField {
@@ -64,7 +65,7 @@ impl DistanceField {
         self.field.sample_error()
     }
 
-    /// Distances (N,) and gradients (N, 3) at points (N, 3).
+    /// Returns distances (N,) and gradients (N, 3) at points (N, 3).
     #[allow(clippy::type_complexity, reason = "two arrays")]
     fn __call__<'py>(
         &self,

@@ -1,5 +1,7 @@
-//! Errors as Python knows them: `OSError` for files that cannot be reached, `ValueError` and `TypeError` for arguments of the wrong
-//! form, and exceptions of our own for the rest.
+//! Errors as Python exceptions.
+//!
+//! Files that cannot be accessed raise `OSError`. Arguments of the wrong type or form raise
+//! `TypeError` or `ValueError`. Everything else raises an exception of this package.
 
 use std::{fmt::Display, io};
 
@@ -21,35 +23,35 @@ create_exception!(
     isochore,
     Error,
     PyException,
-    "Input that cannot be worked with; the message names what is at fault."
+    "Invalid input. The message names the offending element and the problem."
 );
 create_exception!(
     isochore,
     RecipeError,
     Error,
-    "A recipe that cannot be followed. `key` is the dotted path of what is wrong in it, `line` its line; None where unknown."
+    "Invalid recipe. `key` is the dotted path of the offending key, `line` its line; None if unknown."
 );
-create_exception!(isochore, Cancelled, Error, "The `progress` function asked to stop.");
+create_exception!(isochore, Cancelled, Error, "The `progress` callback returned False.");
 
-/// An error on its way to Python.
+/// Error that becomes a Python exception.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// Already an exception.
+    /// Existing Python exception.
     Raised(PyErr),
-    /// A file cannot be reached.
+    /// A file cannot be read or written.
     File(io::ErrorKind, String),
-    /// An argument has the wrong form.
+    /// Argument of the wrong type, shape or range.
     Argument(String),
-    /// Input that cannot be worked with.
+    /// Invalid input.
     Input(String),
-    /// A recipe that cannot be followed.
+    /// Invalid recipe.
     Recipe { message: String, key: Option<String>, line: Option<usize> },
-    /// The caller asked to stop.
+    /// The caller cancelled the operation.
     Cancelled,
 }
 
 impl Failure {
-    /// Input that cannot be worked with.
+    /// Invalid input.
     pub(crate) fn input(problem: impl Display) -> Self {
         Self::Input(problem.to_string())
     }

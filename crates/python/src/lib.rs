@@ -1,4 +1,4 @@
-//! isochore for Python: the module `isochore._native`, which the package `isochore` presents.
+//! Python interface: the module `isochore._native`, which the package `isochore` re-exports.
 
 mod arrays;
 mod attributes;
@@ -14,7 +14,7 @@ mod watch;
 
 use pyo3::prelude::*;
 
-/// What of isochore is not written in Python.
+/// Native part of the package.
 #[pymodule]
 mod _native {
     #[pymodule_export]

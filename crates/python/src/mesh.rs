@@ -1,4 +1,4 @@
-//! Triangle meshes whose arrays NumPy sees without copies.
+//! Triangle meshes.
 
 use std::{path::PathBuf, sync::Arc};
 
@@ -22,7 +22,7 @@ use crate::{
     watch::watched,
 };
 
-/// A triangle mesh. It never changes: its arrays are read-only views, which keep it alive.
+/// An immutable triangle mesh. Its arrays are read-only views that keep it alive.
 #[pyclass(frozen, module = "isochore")]
 #[derive(Debug)]
 pub(crate) struct Mesh {
@@ -36,7 +36,7 @@ impl Mesh {
         positions, triangles, *, uvs = None, normals = None, colors = None, corner_colors = None, skin = None,
         materials = None, triangle_materials = None
     ))]
-    #[expect(clippy::too_many_arguments, reason = "Python names them")]
+    #[expect(clippy::too_many_arguments, reason = "they are keyword arguments in Python")]
     fn new(
         positions: &Bound<'_, PyAny>,
         triangles: &Bound<'_, PyAny>,
@@ -63,25 +63,25 @@ impl Mesh {
             attributes::set_skin(&mut mesh, &joints, &weights)?;
         }
         match (materials.unwrap_or_default(), triangle_materials) {
-            (names, Some(of_triangles)) => attributes::set_materials(&mut mesh, names, of_triangles)?,
+            (names, Some(indices)) => attributes::set_materials(&mut mesh, names, indices)?,
             (names, None) if names.is_empty() => {}
             (_, None) => {
                 return Err(Failure::Argument(
-                    "materials come with triangle_materials, which tell who has them".into(),
+                    "materials require triangle_materials, the material index of each triangle".into(),
                 ));
             }
         }
         Ok(Self { mesh: mesh.into() })
     }
 
-    /// Reads a mesh file: .obj .gltf .glb .ply .stl .off.
+    /// Reads a mesh file: .obj, .gltf, .glb, .ply, .stl or .off.
     #[classmethod]
     fn read(_class: &Bound<'_, PyType>, py: Python<'_>, path: PathBuf) -> Result<Self, Failure> {
         let mesh = py.detach(|| io::read(path))?;
         Ok(Self { mesh: mesh.into() })
     }
 
-    /// Reads a mesh from the bytes of a file in `format`: "obj", "glb", ….
+    /// Reads the content of a mesh file. `format` is its extension, such as "ply".
     #[classmethod]
     fn from_bytes(_class: &Bound<'_, PyType>, py: Python<'_>, data: &[u8], format: &str) -> Result<Self, Failure> {
         let format = parse_format(format)?;
@@ -89,23 +89,24 @@ impl Mesh {
         Ok(Self { mesh: mesh.into() })
     }
 
-    /// The mesh in an object that has `vertices` and `faces`, such as a `trimesh.Trimesh`.
+    /// Converts a `trimesh.Trimesh`, or any object with `vertices` and `faces`.
     #[classmethod]
     fn from_trimesh(_class: &Bound<'_, PyType>, mesh: &Bound<'_, PyAny>) -> Result<Self, Failure> {
         Ok(Self { mesh: mesh_of(mesh)? })
     }
 
-    /// A `trimesh.Trimesh` of the same surface.
+    /// Converts to a `trimesh.Trimesh` of the same surface.
     fn to_trimesh<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("isochore._trimesh")?.call_method1("to_trimesh", (slf,))
     }
 
-    /// The same surface with the vertices of open edges made one where they are at the same position.
+    /// Returns the same surface with the coincident vertices of open edges merged.
     fn welded(&self, py: Python<'_>) -> Self {
         Self { mesh: py.detach(|| TriMesh::clone(&self.mesh).welded_at_boundary().into()) }
     }
 
-    /// A vertex for every combination of what the corners at it carry: the vertex of the mesh that each is, and triangles of these.
+    /// Splits vertices so that each has one combination of attributes. Returns the mesh vertex of
+    /// each split vertex, and triangles of split vertices.
     fn split_at_seams<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let SplitVertices { vertices, triangles, .. } = py.detach(|| SplitVertices::of(&self.mesh));
         let count = triangles.len();
@@ -113,12 +114,12 @@ impl Mesh {
         Ok((vertices.into_pyarray(py).into_any(), triangles.into_any()))
     }
 
-    /// Writes a mesh file in the format of its extension, whole or not at all.
+    /// Writes a mesh file in the format that the extension selects.
     fn write(&self, py: Python<'_>, path: PathBuf) -> Result<(), Failure> {
         Ok(py.detach(|| io::write(path, &self.mesh))?)
     }
 
-    /// The bytes of a file in `format`: "obj", "glb", ….
+    /// Returns the content of a mesh file. `format` is its extension, such as "ply".
     fn to_bytes<'py>(&self, py: Python<'py>, format: &str) -> Result<Bound<'py, PyBytes>, Failure> {
         let format = parse_format(format)?;
         let mut bytes = Vec::new();
@@ -212,7 +213,7 @@ impl Mesh {
         py.detach(|| ClosedMesh::new(&self.mesh).is_ok())
     }
 
-    /// Indices of the triangles that intersect others, exactly.
+    /// Returns the indices of the triangles that intersect other triangles.
     #[pyo3(signature = (*, progress = None))]
     fn self_intersections<'py>(
         &self,
@@ -223,7 +224,7 @@ impl Mesh {
         Ok(found.triangles().to_vec().into_pyarray(py))
     }
 
-    /// It never changes, so that it is its own copy.
+    /// Returns the mesh itself, because it is immutable.
     fn __copy__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
         slf
     }
@@ -247,7 +248,7 @@ impl Mesh {
     }
 }
 
-/// The mesh that `object` is, or that of trimesh or the like it stands for.
+/// Returns the mesh of `object`, which may belong to another library.
 pub(crate) fn mesh_of(object: &Bound<'_, PyAny>) -> Result<Arc<TriMesh>, Failure> {
     if let Ok(mesh) = object.cast::<Mesh>() {
         return Ok(Arc::clone(&mesh.get().mesh));
@@ -265,7 +266,6 @@ fn geometry(positions: &Bound<'_, PyAny>, indices: &Bound<'_, PyAny>) -> Result<
 }
 
 fn parse_format(name: &str) -> Result<Format, Failure> {
-    Format::of_extension(name.trim_start_matches('.')).ok_or_else(|| {
-        Failure::Argument(format!("`{name}` is no format of meshes: take one of obj, gltf, glb, ply, stl, off"))
-    })
+    Format::of_extension(name.trim_start_matches('.'))
+        .ok_or_else(|| Failure::Argument(format!("`{name}` is not a mesh format; use obj, gltf, glb, ply, stl or off")))
 }

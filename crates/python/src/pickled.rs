@@ -1,4 +1,4 @@
-//! Meshes as plain data, for `pickle` and what sends objects to other processes by it.
+//! Serialization of meshes for `pickle` and for other processes.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 
 use crate::error::Failure;
 
-/// All that a mesh is, numbers as their bytes, so that it comes back to the bit.
+/// Content of a mesh. Numbers are stored as bytes, so that every bit survives.
 #[derive(FromPyObject, IntoPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct PickledMesh {
@@ -19,16 +19,16 @@ pub(crate) struct PickledMesh {
     normals: Vec<u8>,
     corner_colors: Vec<u8>,
     colors: Vec<u8>,
-    /// By vertex, how many joints it has; none where no vertex has any.
+    /// Number of joints of each vertex. Empty if the mesh has no skin.
     skin_counts: Vec<u8>,
     joints: Vec<u8>,
     weights: Vec<u8>,
     triangle_materials: Vec<u8>,
     materials: Vec<String>,
-    /// Of the mesh, the node, and the scene.
+    /// Names of the mesh, the node and the scene.
     names: [String; 3],
     material_libraries: Vec<String>,
-    /// JSON, and the bytes that it refers to.
+    /// JSON of a glTF document and the bytes that it refers to.
     gltf: Option<(String, Vec<u8>)>,
 }
 
@@ -60,10 +60,10 @@ impl PickledMesh {
         }
     }
 
-    /// The mesh again.
+    /// Restores the mesh.
     ///
     /// # Errors
-    /// What is no mesh, as from another version.
+    /// The data is not a valid mesh, for example because another version wrote it.
     pub(crate) fn restored(self) -> Result<TriMesh, Failure> {
         let gltf = |(json, bytes): (String, Vec<u8>)| {
             Ok::<_, Failure>(Arc::new(GltfAssets { json: serde_json::from_str(&json).map_err(Failure::input)?, bytes }))
@@ -96,10 +96,10 @@ impl PickledMesh {
         let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
         let corner = &mesh.corner;
         let by_triangle = [corner.normals.len(), corner.colors.len(), mesh.triangle_materials.len()];
-        let is_whole = by_triangle.iter().all(|&count| count == 0 || count == triangles)
+        let is_consistent = by_triangle.iter().all(|&count| count == 0 || count == triangles)
             && corner.uvs.iter().all(|set| set.len() == triangles)
             && [mesh.vertex.colors.len(), mesh.vertex.skin.len()].iter().all(|&count| count == 0 || count == vertices)
             && mesh.triangle_materials.iter().all(|&material| (material as usize) < mesh.materials.len());
-        if is_whole { Ok(mesh) } else { Err(Failure::Argument("what was pickled is no mesh".into())) }
+        if is_consistent { Ok(mesh) } else { Err(Failure::Argument("the pickled data is not a valid mesh".into())) }
     }
 }

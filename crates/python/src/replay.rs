@@ -1,4 +1,4 @@
-//! Recipes carried out on meshes and on bare points.
+//! Replay of recipes on meshes and points.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use crate::{
     watch::watched,
 };
 
-/// A recipe with the meshes and curves that it names.
+/// A parsed recipe.
 #[pyclass(frozen, module = "isochore")]
 #[derive(Debug)]
 pub(crate) struct LoadedRecipe {
@@ -28,7 +28,8 @@ pub(crate) struct LoadedRecipe {
 
 #[pymethods]
 impl LoadedRecipe {
-    /// Reads a recipe, in JSON where `is_json`, in TOML otherwise; `settings` of the form KEY=VALUE win over it.
+    /// Parses a recipe, as JSON if `is_json` and as TOML otherwise. `settings` of the form
+    /// KEY=VALUE override its keys.
     #[new]
     fn new(text: String, is_json: bool, settings: Vec<String>) -> Result<Self, Failure> {
         let overrides: Vec<Override> =
@@ -38,19 +39,19 @@ impl LoadedRecipe {
         Ok(Self { recipe, text, settings })
     }
 
-    /// Names of the mesh files that it needs.
+    /// Names of the mesh files that the recipe uses.
     #[getter]
     fn mesh_names(&self) -> Vec<&str> {
         self.recipe.mesh_names()
     }
 
-    /// Names of the curve files that it needs.
+    /// Names of the curve files that the recipe uses.
     #[getter]
     fn curve_names(&self) -> Vec<&str> {
         self.recipe.curve_names()
     }
 
-    /// Name of the file with the weights of its mask, if it has one.
+    /// Name of the file with the weights of the mask, if any.
     #[getter]
     fn weights_name(&self) -> Option<&str> {
         match &self.recipe.mask.vertices {
@@ -59,7 +60,8 @@ impl LoadedRecipe {
         }
     }
 
-    /// Deforms the target: the mesh, the same triangles at rest, and the report as JSON.
+    /// Deforms the target. Returns the mesh, the same triangles before deformation, and the report
+    /// as JSON.
     fn replay(
         &self,
         py: Python<'_>,
@@ -74,12 +76,12 @@ impl LoadedRecipe {
             let replay = isochore_sculpt::replay(&recipe, &meshes, monitor)?;
             let source = Source { text: self.text.as_bytes(), overrides: &self.settings };
             let report = Report::new(&recipe, source, &replay, &replay.deformed.mesh, monitor)?;
-            let report = serde_json::to_string(&report).expect("a report has only strings for keys");
+            let report = serde_json::to_string(&report).expect("all keys of a report are strings");
             Ok((Mesh { mesh: replay.deformed.mesh.into() }, Mesh { mesh: replay.deformed.rest.into() }, report))
         })
     }
 
-    /// Carries points of shape (N, 3) along the strokes; the points and warnings.
+    /// Advects points of shape (N, 3) along the strokes. Returns the points and warnings.
     fn replay_points<'py>(
         &self,
         py: Python<'py>,

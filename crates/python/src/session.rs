@@ -1,4 +1,6 @@
-//! The sculpting session.
+//! Sculpting sessions.
+
+mod dicts;
 
 use std::{
     ops::Range,
@@ -14,18 +16,10 @@ use isochore_field::Pose;
 use isochore_mesh::{NONE, Origin};
 use isochore_sculpt::{
     recipe::Key,
-    session::{
-        self, DirtyRange, InteractiveRefinement, LockSkipped, NormalWeights, RenderBuffers, SessionOptions,
-        StrokeOptions,
-    },
+    session::{self, InteractiveRefinement, NormalWeights, RenderBuffers, SessionOptions, StrokeOptions},
 };
 use numpy::{Element, IntoPyArray};
-use pyo3::{
-    exceptions::PyBufferError,
-    prelude::*,
-    sync::MutexExt,
-    types::{IntoPyDict, PyDict},
-};
+use pyo3::{exceptions::PyBufferError, prelude::*, sync::MutexExt, types::PyDict};
 
 use crate::{
     arrays::{index, indices, numbers, points_to_array, view},
@@ -35,16 +29,16 @@ use crate::{
     tool::Tool,
 };
 
-/// A mesh that strokes deform one after the other, with undo and redo.
+/// A mesh that strokes deform one after another, with undo and redo.
 #[pyclass(frozen, module = "isochore")]
 #[derive(Debug)]
 pub(crate) struct Session {
     session: Mutex<session::Session>,
-    /// Views of the buffers that NumPy holds.
+    /// Number of buffer views that NumPy holds.
     views: Arc<AtomicUsize>,
 }
 
-/// What a view of a buffer keeps alive; while there is one, the session does not change.
+/// Owner of a buffer view. While one is alive, the session cannot change.
 #[pyclass(frozen)]
 #[derive(Debug)]
 struct Hold {
@@ -79,9 +73,11 @@ impl Session {
             normals: match normals {
                 "area" => NormalWeights::Area,
                 "angle" => NormalWeights::Angle,
-                other => return Err(Failure::Argument(format!("normals are by \"area\" or \"angle\", not {other:?}"))),
+                other => {
+                    return Err(Failure::Argument(format!("normals must be \"area\" or \"angle\", not {other:?}")));
+                }
             },
-            mask: mask.map_or(Ok(default.mask), |given| keys::mask(given, mesh.positions.len()))?,
+            mask: mask.map_or(Ok(default.mask), |mask| keys::mask(mask, mesh.positions.len()))?,
             lock,
             target: default.target,
         };
@@ -121,43 +117,12 @@ impl Session {
     ) -> Result<Bound<'py, PyDict>, Failure> {
         let pose = pose(at, rotate)?;
         let receipt = self.change(py, |session| session.move_to(&pose, time).map_err(Failure::input))?;
-        let dict = PyDict::new(py);
-        dict.set_item("moved_vertices", receipt.moved_vertices)?;
-        dict.set_item("inserted_vertices", receipt.inserted_vertices)?;
-        dict.set_item("removed_vertices", receipt.removed_vertices)?;
-        dict.set_item("flipped_edges", receipt.flipped_edges)?;
-        dict.set_item("is_limited", receipt.is_limited)?;
-        dict.set_item("refused_splits", receipt.refused_splits)?;
-        dict.set_item("seconds", receipt.seconds.total())?;
-        Ok(dict)
+        Ok(dicts::move_receipt(py, &receipt)?)
     }
 
     fn end_stroke<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>, Failure> {
         let receipt = self.change(py, |session| session.end_stroke().map_err(Failure::input))?;
-        let dict = PyDict::new(py);
-        dict.set_item("moves", receipt.moves)?;
-        dict.set_item("touched_vertices", receipt.touched_vertices)?;
-        dict.set_item("inserted_vertices", receipt.inserted_vertices)?;
-        dict.set_item("removed_vertices", receipt.removed_vertices)?;
-        dict.set_item("flipped_edges", receipt.flipped_edges)?;
-        dict.set_item("is_limited", receipt.is_limited)?;
-        dict.set_item("refused_splits", receipt.refused_splits)?;
-        let volume = receipt.volume.map(|volume| {
-            let parts = [
-                ("flow", volume.flow),
-                ("splits", volume.splits),
-                ("remeshing", volume.remeshing),
-                ("rounding", volume.rounding),
-            ];
-            parts.into_py_dict(py)
-        });
-        dict.set_item("volume", volume.transpose()?)?;
-        dict.set_item("lock_max_shift", receipt.lock_max_shift)?;
-        dict.set_item("lock_skipped", receipt.lock_skipped.map(LockSkipped::name))?;
-        dict.set_item("undo_bytes", receipt.undo_bytes)?;
-        dict.set_item("forgotten_strokes", receipt.forgotten_strokes)?;
-        dict.set_item("seconds", receipt.seconds.total())?;
-        Ok(dict)
+        Ok(dicts::stroke_receipt(py, &receipt)?)
     }
 
     fn cancel_stroke(&self, py: Python<'_>) -> Result<(), Failure> {
@@ -172,7 +137,7 @@ impl Session {
         self.change(py, |session| session.redo().map_err(Failure::input))
     }
 
-    /// Keeps the edges at these vertices, inserted ones included, from being split, collapsed or flipped, and frees all others.
+    /// Excludes the edges at the given vertices from splits, collapses and flips.
     fn freeze_edges(&self, py: Python<'_>, vertices: &Bound<'_, PyAny>) -> Result<(), Failure> {
         let vertices = indices("vertices", vertices)?;
         let vertices = numbers("vertices", &vertices)?.iter().map(|&vertex| index("vertices", vertex));
@@ -182,13 +147,13 @@ impl Session {
         })
     }
 
-    /// All strokes that are done and not undone, as the keys of a recipe.
+    /// Returns the strokes that are in effect as a recipe.
     fn log<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let text = self.ask(py, |session| session.log().to_json());
         py.import("json")?.call_method1("loads", (text,))
     }
 
-    /// The surface as it stands, and for each of its vertices the number that it has in the session.
+    /// Returns the surface as a mesh and the session vertex of each of its vertices.
     #[pyo3(signature = (*, lock = true))]
     fn export<'py>(&self, py: Python<'py>, lock: bool) -> PyResult<(Mesh, Bound<'py, PyAny>)> {
         let exported = self.ask(py, |session| session.export(lock));
@@ -222,19 +187,10 @@ impl Session {
         Self::rows(slf, |buffers| buffers.indices)
     }
 
-    /// Ranges of the buffers that have changed since the last call.
+    /// Returns the buffer ranges that have changed since the previous call.
     fn take_changes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let changes = py.detach(|| self.lock().take_changes());
-        let ranges = |ranges: Vec<DirtyRange>| -> Vec<(u32, u32)> {
-            ranges.into_iter().map(|range| (range.start, range.end)).collect()
-        };
-        let dict = PyDict::new(py);
-        dict.set_item("generation", changes.generation)?;
-        dict.set_item("positions", ranges(changes.positions))?;
-        dict.set_item("normals", ranges(changes.normals))?;
-        dict.set_item("attributes", ranges(changes.attributes))?;
-        dict.set_item("triangles", ranges(changes.indices))?;
-        Ok(dict)
+        dicts::changes(py, changes)
     }
 
     fn pick<'py>(
@@ -244,15 +200,15 @@ impl Session {
         direction: [f64; 3],
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
         let hit = self.ask(py, |session| session.pick(origin.into(), direction.into()));
-        hit.map(|hit| hit_to_dict(py, &hit)).transpose()
+        hit.map(|hit| dicts::hit(py, &hit)).transpose()
     }
 
     fn closest_point<'py>(&self, py: Python<'py>, point: [f64; 3]) -> PyResult<Option<Bound<'py, PyDict>>> {
         let hit = self.ask(py, |session| session.closest_point(point.into()));
-        hit.map(|hit| hit_to_dict(py, &hit)).transpose()
+        hit.map(|hit| dicts::hit(py, &hit)).transpose()
     }
 
-    /// Numbers of the vertices that the support of a tool at a pose reaches.
+    /// Returns the vertices within the support of a tool at a pose.
     #[pyo3(signature = (tool, at, *, rotate = [0.0, 0.0, 1.0, 0.0]))]
     fn vertices_in_reach<'py>(
         &self,
@@ -270,11 +226,11 @@ impl Session {
         Ok(vertices.into_pyarray(py).into_any())
     }
 
-    /// Points around a tool and where a move from one place to another would shift them.
+    /// Returns points around a tool and their displacements by a move.
     #[pyo3(signature = (
         tool, start, end, *, start_rotate = [0.0, 0.0, 1.0, 0.0], end_rotate = [0.0, 0.0, 1.0, 0.0], per_side = 12
     ))]
-    #[expect(clippy::too_many_arguments, reason = "Python names them")]
+    #[expect(clippy::too_many_arguments, reason = "they are keyword arguments in Python")]
     fn preview<'py>(
         &self,
         py: Python<'py>,
@@ -293,7 +249,7 @@ impl Session {
         Ok((points_to_array(py, points)?.into_any(), points_to_array(py, shifts)?.into_any()))
     }
 
-    /// Volume that the stroke under way has moved outward and inward.
+    /// Volumes that the stroke in progress has moved outward and inward.
     #[getter]
     fn moved_volume(&self, py: Python<'_>) -> (f64, f64) {
         let moved = self.ask(py, session::Session::moved_volume);
@@ -313,32 +269,27 @@ impl Session {
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let history = self.ask(py, session::Session::history);
-        [
-            ("undoable", history.undoable),
-            ("redoable", history.redoable),
-            ("forgotten", history.forgotten),
-            ("bytes", history.bytes),
-        ]
-        .into_py_dict(py)
+        dicts::history(py, &history)
     }
 
-    /// By vertex of the mesh as opened, the vertex that stands in its place.
+    /// Returns, for each vertex of the opened mesh, the vertex that represents it.
     fn vertex_map<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         self.ask(py, session::Session::vertex_map).into_pyarray(py).into_any()
     }
 
-    /// Numbers of the vertices that the render vertices belong to.
+    /// Returns the vertex of each render vertex.
     fn vertices_of_render_vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         let vertices: Vec<u32> =
             self.ask(py, |session| render_vertices(session).map(|render| session.vertex_of(render)).collect());
         vertices.into_pyarray(py).into_any()
     }
 
-    /// By render vertex, the triangle of the mesh as opened that it takes its attributes from, and its barycentric coordinates there.
+    /// Returns, for each render vertex, the triangle of the opened mesh that provides its
+    /// attributes, and barycentric coordinates.
     fn origins<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let nowhere = Origin { triangle: NONE, weights: DVec3::ZERO };
+        let no_origin = Origin { triangle: NONE, weights: DVec3::ZERO };
         let (triangles, weights): (Vec<u32>, Vec<DVec3>) = self.ask(py, |session| {
-            let origins = render_vertices(session).map(|render| session.origin_of(render).unwrap_or(nowhere));
+            let origins = render_vertices(session).map(|render| session.origin_of(render).unwrap_or(no_origin));
             origins.map(|origin| (origin.triangle, origin.weights)).unzip()
         });
         Ok((triangles.into_pyarray(py).into_any(), points_to_array(py, weights)?.into_any()))
@@ -351,17 +302,21 @@ impl Session {
 }
 
 impl Session {
-    /// To be called without the interpreter's lock, which whoever has the session may wait for.
+    /// Locks the session. Call it without the global interpreter lock, which the current owner may
+    /// be waiting for.
     fn lock(&self) -> MutexGuard<'_, session::Session> {
         self.session.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Asks the session without the interpreter's lock.
+    /// Queries the session without the global interpreter lock.
     fn ask<T: Send>(&self, py: Python<'_>, question: impl FnOnce(&session::Session) -> T + Send) -> T {
         py.detach(|| question(&self.lock()))
     }
 
-    /// Changes the session without the interpreter's lock, while no view of its buffers is held.
+    /// Changes the session without the global interpreter lock.
+    ///
+    /// # Errors
+    /// `BufferError` if a view of a buffer exists.
     fn change<T: Send>(
         &self,
         py: Python<'_>,
@@ -371,14 +326,14 @@ impl Session {
             let mut session = self.lock();
             if self.views.load(Ordering::Acquire) > 0 {
                 return Err(Failure::Raised(PyBufferError::new_err(
-                    "views of the session's buffers are still held; drop or copy them before it changes",
+                    "views of the session's buffers are still held; copy or delete them before changing the session",
                 )));
             }
             change(&mut session)
         })
     }
 
-    /// A view of the rows of a buffer, which keeps the session from changing while it lives.
+    /// Creates a view of the rows of a buffer. The session cannot change while the view is alive.
     fn rows<'py, T: Element + Pod, const N: usize>(
         slf: &Bound<'py, Self>,
         buffer: impl for<'a> FnOnce(RenderBuffers<'a>) -> &'a [[T; N]],
@@ -396,18 +351,7 @@ fn render_vertices(session: &session::Session) -> Range<u32> {
     0..session.buffers().positions.len() as u32
 }
 
-/// A pose from a place and an axis with an angle in degrees.
+/// Converts a position and an axis with an angle in degrees to a pose.
 fn pose(at: [f64; 3], rotate: [f64; 4]) -> Result<Pose, Failure> {
     Key { at, rotate }.pose().map_err(|error| Failure::Argument(error.to_string()))
-}
-
-fn hit_to_dict<'py>(py: Python<'py>, hit: &session::Hit) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("triangle", hit.triangle)?;
-    dict.set_item("vertices", hit.vertices)?;
-    dict.set_item("point", hit.point.to_array())?;
-    dict.set_item("weights", hit.weights.to_array())?;
-    dict.set_item("normal", hit.normal.to_array())?;
-    dict.set_item("distance", hit.distance)?;
-    Ok(dict)
 }

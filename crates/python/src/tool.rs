@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use crate::{error::Failure, keys::keys, mesh::mesh_of, watch::watched};
 
-/// A tool ready to work, made once and shared between strokes and sessions.
+/// A prepared tool. It can be used by any number of strokes and sessions.
 #[pyclass(frozen, module = "isochore")]
 #[derive(Debug)]
 pub(crate) struct Tool {

@@ -1,4 +1,5 @@
-//! Long work without the interpreter's lock, which Ctrl-C and the caller's `progress` function can stop.
+//! Long operations that release the global interpreter lock, and that signals and the progress
+//! callback can cancel.
 
 use std::{
     sync::{
@@ -18,10 +19,10 @@ use pyo3::{
 
 use crate::error::Failure;
 
-/// How often the calling thread looks for signals and tells of progress.
+/// Period at which the calling thread checks for signals and reports progress.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// What the working threads and the calling one tell each other.
+/// State shared by the worker threads and the calling thread.
 #[derive(Debug, Default)]
 struct Blackboard {
     is_cancelled: AtomicBool,
@@ -40,8 +41,11 @@ impl Monitor for Blackboard {
     }
 }
 
-/// Runs `work` on another thread with the interpreter's lock released. Meanwhile this thread handles signals and calls
-/// `progress(stage, done)`, where there is one; what either raises stops the work and is raised here, and so does False.
+/// Runs `work` on another thread without the global interpreter lock.
+///
+/// Meanwhile this thread handles signals and calls `progress(stage, fraction)`, if given. An
+/// exception that either raises cancels the work and is raised again. A result of False cancels the
+/// work and raises `Cancelled`.
 pub(crate) fn watched<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -52,16 +56,16 @@ pub(crate) fn watched<T: Send>(
     thread::scope(|scope| {
         let worker = scope.spawn(|| {
             let result = work(&blackboard);
-            // The other end waits for this until it hears it.
+            // The receiver lives until the worker has finished.
             let _ = done.send(());
             result
         });
         let mut raised = None;
         let mut is_done = is_done;
         loop {
-            let (heard, receiver) = py.detach(move || (is_done.recv_timeout(INTERVAL), is_done));
+            let (message, receiver) = py.detach(move || (is_done.recv_timeout(INTERVAL), is_done));
             is_done = receiver;
-            if !matches!(heard, Err(RecvTimeoutError::Timeout)) {
+            if !matches!(message, Err(RecvTimeoutError::Timeout)) {
                 break;
             }
             if raised.is_none()
@@ -80,6 +84,7 @@ pub(crate) fn watched<T: Send>(
     })
 }
 
+/// Handles pending signals and calls the progress callback.
 fn attend(py: Python<'_>, progress: Option<&Bound<'_, PyAny>>, blackboard: &Blackboard) -> Result<(), Failure> {
     py.check_signals()?;
     let Some(progress) = progress else { return Ok(()) };

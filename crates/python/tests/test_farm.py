@@ -36,7 +36,7 @@ def job(recipe, tmp_path):
     return tmp_path / "press.json", targets
 
 
-def test_a_killed_worker_costs_nothing(client, job, tmp_path):
+def test_a_killed_worker_loses_no_results(client, job, tmp_path):
     recipe, targets = job
     results = tmp_path / "results"
     outcomes = farm.run(recipe, targets, results, client=client)
@@ -53,7 +53,7 @@ def test_a_killed_worker_costs_nothing(client, job, tmp_path):
         alone = isochore.run(recipe, settings=[f"target.mesh={json.dumps(str(target))}"])
         assert (results / target.name).read_bytes() == alone.mesh.to_bytes("ply")
         assert report["after"] == alone.report["after"]
-    # What was there before the worker died was not made again.
+    # Results written before the worker died were not computed again.
     assert before == {path: path.stat().st_mtime_ns for path in before}
     assert not list(results.glob(".isochore-*"))
 
@@ -64,7 +64,7 @@ def test_a_killed_worker_costs_nothing(client, job, tmp_path):
     assert times == {path: path.stat().st_mtime_ns for path in results.iterdir()}
 
 
-def test_what_has_changed_is_done_again(client, job, tmp_path):
+def test_changed_settings_are_computed_again(client, job, tmp_path):
     recipe, targets = job
     results = tmp_path / "results"
     [(_, first)] = farm.run(recipe, targets[:1], results, client=client)
@@ -72,26 +72,26 @@ def test_what_has_changed_is_done_again(client, job, tmp_path):
     assert first["inserted_vertices"] > 0 and second["inserted_vertices"] == 0
 
 
-def test_a_changed_tool_makes_a_new_result(client, job, tmp_path):
+def test_a_changed_tool_mesh_is_computed_again(client, job, tmp_path):
     recipe, targets = job
     table = json.loads(recipe.read_text())
     [name] = table["tools"]
     table["tools"][name]["shape"] = {"kind": "mesh", "mesh": "tool.ply", "resolution": 16}
     recipe.write_text(json.dumps(table))
-    places = []
+    outputs = []
     for radius in [0.3, 0.35]:
         shape = {"kind": "icosphere", "radius": radius, "subdivisions": 3}
         isochore.run({"recipe": 1, "target": {"shape": shape}, "stroke": []}).mesh.write(tmp_path / "tool.ply")
         [(_, report)] = farm.run(recipe, targets[:1], tmp_path / "results", client=client)
         assert isinstance(report, dict)
-        places.append((tmp_path / "results" / targets[0].name).read_bytes())
+        outputs.append((tmp_path / "results" / targets[0].name).read_bytes())
         alone = isochore.run(recipe, settings=[f"target.mesh={json.dumps(str(targets[0]))}"])
-        assert places[-1] == alone.mesh.to_bytes("ply")
-    assert places[0] != places[1]
+        assert outputs[-1] == alone.mesh.to_bytes("ply")
+    assert outputs[0] != outputs[1]
 
 
 @pytest.mark.parametrize("format", ["gltf", "glb"])
-def test_what_a_document_names_belongs_to_the_result(client, job, tmp_path, format):
+def test_files_named_by_a_document_are_inputs(client, job, tmp_path, format):
     recipe, targets = job
     document, binary = split(isochore.Mesh.read(targets[0]).to_bytes("glb"))
     (tmp_path / "parts").mkdir()
@@ -104,7 +104,7 @@ def test_what_a_document_names_belongs_to_the_result(client, job, tmp_path, form
     target.write_bytes(text)
     reports = []
     for size in [1.0, 1.5]:
-        # The positions come first.
+        # The positions are at the beginning of the buffer.
         count = document["accessors"][0]["count"]
         assert document["accessors"][0]["type"] == "VEC3" and document["bufferViews"][0].get("byteOffset", 0) == 0
         scaled = (np.frombuffer(binary, "<f4", 3 * count) * np.float32(size)).tobytes()
@@ -118,12 +118,12 @@ def test_what_a_document_names_belongs_to_the_result(client, job, tmp_path, form
 
 
 def split(glb):
-    """The document of a GLB file, and its binary part."""
+    """Returns the document of a GLB file and its binary part."""
     length = struct.unpack_from("<I", glb, 12)[0]
     return json.loads(glb[20 : 20 + length]), glb[28 + length :]
 
 
-def test_results_are_for_whom_new_files_are(client, job, tmp_path):
+def test_results_have_the_permissions_of_new_files(client, job, tmp_path):
     recipe, targets = job
     fresh = tmp_path / "fresh"
     fresh.touch()
@@ -131,21 +131,21 @@ def test_results_are_for_whom_new_files_are(client, job, tmp_path):
     assert [path.stat().st_mode for path in (tmp_path / "results").iterdir()] == 2 * [fresh.stat().st_mode]
 
 
-def test_a_report_tells_of_the_mesh_beside_it(client, job, tmp_path):
+def test_a_mesh_without_its_report_is_computed_again(client, job, tmp_path):
     recipe, targets = job
     results = tmp_path / "results"
-    place = results / targets[0].name
+    output = results / targets[0].name
     [(_, first)] = farm.run(recipe, targets[:1], results, client=client)
-    mesh = place.read_bytes()
-    # As a worker leaves it that dies between mesh and report.
-    isochore.Mesh.read(targets[1]).write(place)
+    mesh = output.read_bytes()
+    # The state after a worker died between writing the mesh and writing the report.
+    isochore.Mesh.read(targets[1]).write(output)
     [(_, second)] = farm.run(recipe, targets[:1], results, client=client)
-    assert place.read_bytes() == mesh and second["after"] == first["after"]
+    assert output.read_bytes() == mesh and second["after"] == first["after"]
 
 
-def test_one_bad_target_spoils_no_other(client, job, tmp_path):
+def test_a_bad_target_does_not_affect_others(client, job, tmp_path):
     recipe, targets = job
-    targets[0].write_text("no mesh")
+    targets[0].write_text("not a mesh")
     outcomes = dict(farm.run(recipe, targets[:3], tmp_path / "results", client=client))
     assert isinstance(outcomes[targets[0]], isochore.Error)
     assert isinstance(outcomes[targets[1]], dict) and isinstance(outcomes[targets[2]], dict)
@@ -153,7 +153,7 @@ def test_one_bad_target_spoils_no_other(client, job, tmp_path):
 
 def test_results_cannot_overwrite_their_sources(client, job):
     recipe, targets = job
-    with pytest.raises(ValueError, match="take the place"):
+    with pytest.raises(ValueError, match="would overwrite"):
         list(farm.run(recipe, targets, targets[0].parent, client=client))
     with pytest.raises(ValueError, match="same name"):
         list(farm.run(recipe, [*targets, targets[0].with_suffix(".obj")], "elsewhere", client=client))

@@ -11,7 +11,7 @@ def ball():
 
 
 def pressed(session):
-    """Moves a ball through the north pole; the vertices that moved."""
+    """Moves a ball through the north pole. Returns the positions of the vertices."""
     session.begin_stroke(isochore.Tool({"shape": {"kind": "sphere", "radius": 0.3}, "support": 0.4}), refine=False)
     for height in np.linspace(1.5, 1.1, 5):
         session.move_to([0, 0, height])
@@ -25,7 +25,7 @@ def moved(session, ball):
 
 
 @pytest.mark.parametrize("kind", [np.float64, np.float32, bool])
-def test_held_vertices_keep_their_bits(ball, kind):
+def test_masked_vertices_keep_their_bits(ball, kind):
     held = ball.positions[:, 0] < 0
     free = moved(isochore.Session(ball), ball)
     masked = moved(isochore.Session(ball, mask=held.astype(kind)), ball)
@@ -33,7 +33,7 @@ def test_held_vertices_keep_their_bits(ball, kind):
     assert np.any(masked) and not np.any(masked & ~free)
 
 
-def test_a_mask_as_a_recipe_has_it(ball):
+def test_a_mask_table_of_a_recipe(ball):
     held = (ball.positions[:, 0] < 0).astype(float)
     whole = pressed(isochore.Session(ball, mask={"vertices": held, "fade": 0.25}))
     session = isochore.Session(ball, mask={"vertices": held.tolist(), "fade": np.float32(0.25)})
@@ -41,7 +41,7 @@ def test_a_mask_as_a_recipe_has_it(ball):
     mirrored = isochore.Session(ball, mask={"mirror": [{"point": [0, 0, 0], "normal": np.array([0, 0, 1.0])}]}, lock=False)
     low = ball.positions[:, 2] < -0.9
     assert np.any(moved(mirrored, ball) & low) and not np.any(moved(isochore.Session(ball), ball) & low)
-    # The log has the mask, so that it gives the same bits.
+    # The log contains the mask, so its replay gives the same bits.
     log = {**session.log(), "refine": {"enabled": False}, "volume": {"lock": False}}
     unlocked, _ = session.export(lock=False)
     assert np.array_equal(isochore.run(log, meshes={"target": ball}).mesh.positions, unlocked.positions)
@@ -60,12 +60,12 @@ def test_a_mask_as_a_recipe_has_it(ball):
         ({"fade": object()}, TypeError, "object"),
     ],
 )
-def test_wrong_masks_are_refused(ball, mask, error, words):
+def test_rejects_invalid_masks(ball, mask, error, words):
     with pytest.raises(error, match=words):
         isochore.Session(ball, mask=mask)
 
 
-def test_frozen_edges_and_kept_balls_are_not_edited(ball):
+def test_frozen_edges_and_kept_balls_are_not_refined(ball):
     def edited(**options):
         session = isochore.Session(ball)
         session.freeze_edges(options.pop("frozen", []))
@@ -83,7 +83,7 @@ def test_frozen_edges_and_kept_balls_are_not_edited(ball):
     session = isochore.Session(ball)
     with pytest.raises(ValueError, match="2562 is none"):
         session.freeze_edges([2562])
-    with pytest.raises(ValueError, match="-1 is no index"):
+    with pytest.raises(ValueError, match="-1 is not a valid index"):
         session.freeze_edges([-1])
     with pytest.raises(ValueError, match="integers"):
         session.freeze_edges([0.5])

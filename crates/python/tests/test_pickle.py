@@ -1,4 +1,4 @@
-"""Meshes sent to other processes, and copied."""
+"""Pickling and copying of meshes."""
 
 import copy
 import pickle
@@ -13,7 +13,7 @@ ARRAYS = ["positions", "triangles", "normals", "colors", "corner_colors", "trian
 
 @pytest.fixture
 def mesh():
-    """A mesh with everything on it."""
+    """A mesh with all attributes."""
     generator = np.random.default_rng(1)
     ball = isochore.run({"recipe": 1, "target": {"shape": {"kind": "icosphere", "radius": 1, "subdivisions": 2}}, "stroke": []})
     positions, triangles = ball.mesh.positions, ball.mesh.triangles
@@ -31,7 +31,7 @@ def mesh():
     )
 
 
-def test_a_pickled_mesh_is_the_same_to_the_bit(mesh):
+def test_pickling_keeps_every_bit(mesh):
     bare = isochore.Mesh(mesh.positions, mesh.triangles)
     for original in [mesh, bare]:
         again = pickle.loads(pickle.dumps(original))
@@ -43,7 +43,7 @@ def test_a_pickled_mesh_is_the_same_to_the_bit(mesh):
     assert all(map(np.array_equal, pickle.loads(pickle.dumps(mesh)).skin, mesh.skin))
 
 
-def test_what_a_file_said_is_pickled(mesh):
+def test_pickling_keeps_the_metadata_of_a_file(mesh):
     read = isochore.Mesh.from_bytes(mesh.to_bytes("glb"), "glb")
     assert pickle.loads(pickle.dumps(read)).to_bytes("glb") == read.to_bytes("glb")
 
@@ -52,10 +52,10 @@ def test_a_mesh_is_its_own_copy(mesh):
     assert copy.copy(mesh) is mesh and copy.deepcopy([mesh])[0] is mesh
 
 
-def test_what_is_no_mesh_is_refused(mesh):
+def test_rejects_invalid_pickled_data(mesh):
     restore, (parts,) = mesh.__reduce__()
     for change in [{"uvs": [b""]}, {"normals": parts["normals"][:36]}, {"materials": []}, {"skin_counts": parts["skin_counts"][:4]}]:
-        with pytest.raises(ValueError, match="no mesh"):
+        with pytest.raises(ValueError, match="not a valid mesh"):
             restore({**parts, **change})
     with pytest.raises(isochore.Error, match="names vertex"):
         restore({**parts, "positions": parts["positions"][:24]})

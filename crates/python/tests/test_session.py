@@ -22,7 +22,7 @@ def stroke(session, brush, **options):
     return session.end_stroke()
 
 
-def test_log_gives_the_same_bits(ball, brush):
+def test_replaying_the_log_gives_the_same_bits(ball, brush):
     session = isochore.Session(ball, lock=False)
     receipt = stroke(session, brush, refine=False)
     assert receipt["moves"] == 5 and receipt["touched_vertices"] > 100 and receipt["inserted_vertices"] == 0
@@ -36,20 +36,20 @@ def test_log_gives_the_same_bits(ball, brush):
     assert np.array_equal(points, exported.positions)
 
 
-def test_removed_vertices_are_mapped_to_what_is_in_their_place(ball, brush):
+def test_removed_vertices_are_mapped_to_the_merged_ones(ball, brush):
     session = isochore.Session(ball)
     before = np.arange(len(ball.positions))
     assert np.array_equal(session.vertex_map(), before)
     assert stroke(session, brush, longest_edge=0.5)["removed_vertices"] > 0
-    exported, there = session.export()
+    exported, remaining = session.export()
     now = session.vertex_map()
-    removed = np.setdiff1d(before, there)
+    removed = np.setdiff1d(before, remaining)
     assert len(removed) > 0 and np.array_equal(np.flatnonzero(now != before), removed)
-    assert np.isin(now, there).all()
+    assert np.isin(now, remaining).all()
     assert session.undo() and np.array_equal(session.vertex_map(), before)
 
 
-def test_volume_is_accounted_for(ball, brush):
+def test_volume_changes_add_up(ball, brush):
     session = isochore.Session(ball, lock=False)
     receipt = stroke(session, brush)
     assert receipt["inserted_vertices"] > 0
@@ -61,11 +61,11 @@ def test_volume_is_accounted_for(ball, brush):
     assert session.volume == pytest.approx(exported.volume, abs=1e-13)
 
 
-def test_lock_gives_the_volume_back(ball, brush):
+def test_the_lock_restores_the_volume(ball, brush):
     session = isochore.Session(ball)
     receipt = stroke(session, brush)
     assert receipt["lock_max_shift"] > 0 and receipt["lock_skipped"] is None
-    # Far away, nothing moves.
+    # Far from the surface, the tool moves nothing.
     session.begin_stroke(brush)
     assert session.is_stroke_under_way
     session.move_to([9, 0, 0])
@@ -74,7 +74,7 @@ def test_lock_gives_the_volume_back(ball, brush):
     assert stroke(isochore.Session(ball, lock=False), brush)["lock_skipped"] == "off"
     locked, _ = session.export()
     assert locked.volume == pytest.approx(ball.volume, rel=1e-13)
-    # It is what the host sees; the flow alone is elsewhere.
+    # The buffers show the locked positions, which differ from those of the flow alone.
     unlocked, vertices = session.export(lock=False)
     rows = dict(zip(session.vertices_of_render_vertices(), session.positions))
     shown = np.array([rows[vertex] for vertex in vertices])
@@ -100,7 +100,7 @@ def test_undo_and_redo_are_exact(ball, brush):
     assert np.array_equal(session.positions, done[0])
 
 
-def test_changes_bring_copies_up_to_date(ball, brush):
+def test_changes_keep_copies_up_to_date(ball, brush):
     session = isochore.Session(ball)
     copies = {}
 
@@ -129,7 +129,7 @@ def test_changes_bring_copies_up_to_date(ball, brush):
     follow()
 
 
-def test_views_keep_the_session_still(ball, brush):
+def test_views_prevent_changes(ball, brush):
     session = isochore.Session(ball)
     positions = session.positions
     part = positions[3:5]
@@ -153,7 +153,7 @@ def test_queries(ball, brush):
     assert session.pick([0, 0, 5], [0, 0, 1]) is None
     assert session.closest_point([0, 3, 0])["point"] == pytest.approx([0, 1, 0], abs=2e-2)
     reach = session.vertices_in_reach(brush, [0, 0, 1.2])
-    # Exactly those within the radius and the support of the center.
+    # Exactly the vertices whose distance from the center is less than radius plus support.
     expected = np.flatnonzero(np.linalg.norm(ball.positions - [0, 0, 1.2], axis=1) < 0.5)
     assert np.array_equal(reach, expected)
     points, shifts = session.preview(brush, [0, 0, 1.2], [0, 0, 1.1])
@@ -161,12 +161,12 @@ def test_queries(ball, brush):
     center = np.argmin(np.linalg.norm(points - [0, 0, 1.2], axis=1))
     assert shifts[center] == pytest.approx([0, 0, -0.1], abs=1e-12)
     _, turned = session.preview(brush, [0, 0, 1.2], [0, 0, 1.1], end_rotate=[0, 0, 1, 30])
-    # What the core holds turns about the tool's axis as it goes down.
+    # Points in the core rotate about the axis of the tool while they move down.
     assert turned[center][2] == pytest.approx(-0.1, abs=1e-12) and np.any(turned[center][:2] != 0)
     assert np.array_equal(session.vertices_of_render_vertices(), np.arange(len(ball.positions)))
 
 
-def test_wrong_calls_are_refused(ball, brush):
+def test_rejects_invalid_calls(ball, brush):
     session = isochore.Session(ball)
     for call in [session.end_stroke, session.cancel_stroke, lambda: session.move_to([0, 0, 0])]:
         with pytest.raises(isochore.Error, match="no stroke"):
@@ -186,7 +186,7 @@ def test_wrong_calls_are_refused(ball, brush):
 
 
 def test_seams_stay_closed(brush):
-    # A box whose faces have texture coordinates of their own: every edge of it is a seam.
+    # A box whose faces have separate texture coordinates, so that every edge of the box is a seam.
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
     quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     triangles = np.array([[q[0], q[i], q[i + 1]] for q in quads for i in (1, 2)])
@@ -199,7 +199,7 @@ def test_seams_stay_closed(brush):
     session.end_stroke()
     exported, _ = session.export()
     assert exported.is_closed and len(exported.triangles) > 100
-    # No triangle reaches across from one face's texture to another's.
+    # No triangle spans the textures of two faces.
     assert np.all(np.ptp(np.floor(exported.uvs[0][:, :, 0].clip(1e-9) / 2), axis=1) == 0)
     across = session.uvs[0].shape[0] - len(np.unique(session.vertices_of_render_vertices()))
     assert across >= 24 - 8

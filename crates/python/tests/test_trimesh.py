@@ -1,4 +1,4 @@
-"""Meshes to trimesh and back: what trimesh has twice at a seam is one vertex here."""
+"""Conversion to trimesh and back. Vertices that trimesh duplicates at seams are single vertices in isochore."""
 
 import numpy as np
 import pytest
@@ -40,31 +40,31 @@ def assert_same(mesh, other):
     assert mesh.materials == other.materials
 
 
-def test_a_texture_keeps_its_seams(textured):
-    there = textured.to_trimesh()
-    # One more at each vertex of both seams, and two more where they cross.
-    assert len(there.vertices) == (SEGMENTS + 1) * (RINGS + 1)
-    assert np.array_equal(there.visual.uv[there.faces], textured.uvs[0])
-    assert np.array_equal(there.triangles, textured.positions[textured.triangles])
-    assert np.array_equal(there.vertices[: len(textured.positions)], textured.positions)
-    assert_same(isochore.Mesh.from_trimesh(there), textured)
+def test_textures_keep_their_seams(textured):
+    exported = textured.to_trimesh()
+    # One duplicate at each vertex of both seams, and two more at their crossing.
+    assert len(exported.vertices) == (SEGMENTS + 1) * (RINGS + 1)
+    assert np.array_equal(exported.visual.uv[exported.faces], textured.uvs[0])
+    assert np.array_equal(exported.triangles, textured.positions[textured.triangles])
+    assert np.array_equal(exported.vertices[: len(textured.positions)], textured.positions)
+    assert_same(isochore.Mesh.from_trimesh(exported), textured)
 
 
-def test_a_texture_from_trimesh_is_deformed_closed(textured):
-    there = textured.to_trimesh()
-    assert not there.is_watertight
-    there.visual.material = SimpleMaterial(name="bark")
+def test_a_textured_trimesh_stays_closed(textured):
+    exported = textured.to_trimesh()
+    assert not exported.is_watertight
+    exported.visual.material = SimpleMaterial(name="bark")
     recipe = {
         "recipe": 1,
         "target": {"mesh": "torus"},
         "stroke": [{"kind": "twist", "origin": [0, 0, 0], "axis": [0, 0, 1], "degrees_per_unit": 30.0}],
         "refine": {"max_edge": 0.4},
     }
-    twisted, rest, report = isochore.run(recipe, meshes={"torus": there})
-    assert twisted.is_closed and abs(report["volume_change"]) < 1e-12 and len(twisted.triangles) > len(there.faces)
+    twisted, rest, report = isochore.run(recipe, meshes={"torus": exported})
+    assert twisted.is_closed and abs(report["volume_change"]) < 1e-12 and len(twisted.triangles) > len(exported.faces)
     assert twisted.materials == ["bark"] and not twisted.triangle_materials.any()
-    # On the torus at rest, both coordinates are the angles. A point lies in the sector
-    # of its flat triangle, so that it is off by less than one; if interpolated across a seam, by up to half the circle.
+    # On the torus at rest, both coordinates are angles. A point is in the sector of its flat triangle, so its error is less
+    # than one sector. Interpolation across a seam would give errors of up to half the circle.
     u = np.arctan2(rest.positions[:, 1], rest.positions[:, 0])[rest.triangles] / (2 * np.pi)
     apart = (twisted.uvs[0][:, :, 0] - u + 0.5) % 1 - 0.5
     assert np.abs(apart).max() < 1 / SEGMENTS
@@ -77,17 +77,17 @@ def test_materials_of_faces(textured):
         mesh = isochore.Mesh(
             textured.positions, textured.triangles, uvs=textured.uvs, materials=names, triangle_materials=numbers
         )
-        there = mesh.to_trimesh()
-        assert [material.name for material in there.visual.material] == names
-        assert np.array_equal(there.visual.face_materials, numbers)
-        assert_same(isochore.Mesh.from_trimesh(there), mesh)
+        exported = mesh.to_trimesh()
+        assert [material.name for material in exported.visual.material] == names
+        assert np.array_equal(exported.visual.face_materials, numbers)
+        assert_same(isochore.Mesh.from_trimesh(exported), mesh)
     several = MultiMaterial([PBRMaterial(name="a"), PBRMaterial()])
     box = trimesh.creation.box()
     box.visual = TextureVisuals(material=several, face_materials=[0] * 6 + [1] * 6)
     mesh = isochore.Mesh.from_trimesh(box)
     assert mesh.materials == ["a", ""] and mesh.uvs == [] and mesh.triangle_materials.tolist() == [0] * 6 + [1] * 6
     assert_same(isochore.Mesh.from_trimesh(mesh.to_trimesh()), mesh)
-    # trimesh cuts the faces, but not the list of their materials.
+    # trimesh removes faces without shortening the list of their materials.
     box.update_faces(np.arange(12) < 7)
     assert isochore.Mesh.from_trimesh(box).materials == []
 
@@ -95,10 +95,10 @@ def test_materials_of_faces(textured):
 def test_colors_of_vertices(textured):
     colors = (np.arange(4 * len(textured.positions)).reshape(-1, 4) % 256).astype(np.uint8)
     mesh = isochore.Mesh(textured.positions, textured.triangles, colors=colors / 255)
-    there = mesh.to_trimesh()
-    assert there.is_watertight and np.array_equal(there.visual.vertex_colors, colors)
-    assert_same(isochore.Mesh.from_trimesh(there), mesh)
-    # With a texture, trimesh keeps colors beside it.
+    exported = mesh.to_trimesh()
+    assert exported.is_watertight and np.array_equal(exported.visual.vertex_colors, colors)
+    assert_same(isochore.Mesh.from_trimesh(exported), mesh)
+    # If the mesh has a texture, trimesh stores colors as a vertex attribute.
     both = isochore.Mesh(textured.positions, textured.triangles, uvs=textured.uvs, colors=colors / 255)
     assert_same(isochore.Mesh.from_trimesh(both.to_trimesh()), both)
 
@@ -107,9 +107,9 @@ def test_colors_that_differ_across_a_seam(textured):
     # The texture as a color, which jumps from 1 to 0 at the seams.
     colors = np.dstack([np.rint(textured.uvs[0].astype(float) * 255) / 255, np.ones((*textured.triangles.shape, 2))])
     mesh = isochore.Mesh(textured.positions, textured.triangles, corner_colors=colors)
-    there = mesh.to_trimesh()
-    assert there.visual.kind == "vertex" and len(there.vertices) == (SEGMENTS + 1) * (RINGS + 1)
-    assert_same(isochore.Mesh.from_trimesh(there), mesh)
+    exported = mesh.to_trimesh()
+    assert exported.visual.kind == "vertex" and len(exported.vertices) == (SEGMENTS + 1) * (RINGS + 1)
+    assert_same(isochore.Mesh.from_trimesh(exported), mesh)
 
 
 def test_colors_of_faces():
@@ -118,13 +118,13 @@ def test_colors_of_faces():
     mesh = isochore.Mesh.from_trimesh(box)
     assert mesh.is_closed and mesh.colors is None
     assert np.array_equal(mesh.corner_colors[:, 2, :3], np.arange(36).reshape(12, 3) / 255)
-    there = mesh.to_trimesh()
-    assert there.visual.kind == "face" and np.array_equal(there.visual.face_colors, box.visual.face_colors)
-    assert there.is_watertight
-    assert_same(isochore.Mesh.from_trimesh(there), mesh)
+    exported = mesh.to_trimesh()
+    assert exported.visual.kind == "face" and np.array_equal(exported.visual.face_colors, box.visual.face_colors)
+    assert exported.is_watertight
+    assert_same(isochore.Mesh.from_trimesh(exported), mesh)
 
 
-def test_real_colors_and_those_without_alpha():
+def test_float_colors_and_colors_without_alpha():
     box = trimesh.creation.box()
     box.visual = TextureVisuals(uv=box.vertices[:, :2], material=SimpleMaterial())
     box.visual.vertex_attributes["color"] = np.full((8, 3), 0.25, np.float32)
@@ -133,8 +133,8 @@ def test_real_colors_and_those_without_alpha():
     assert isochore.Mesh.from_trimesh(box).colors == pytest.approx(np.full((8, 4), 0.2), abs=1e-15)
 
 
-def test_what_has_no_colors_keeps_its_vertices():
-    # Two triangles that touch along an edge and are not joined.
+def test_a_mesh_without_colors_keeps_its_vertices():
+    # Two triangles that touch along an edge but do not have common vertices.
     vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
     apart = trimesh.Trimesh(vertices, [[0, 1, 2], [3, 4, 5]], process=False)
     assert np.array_equal(isochore.Mesh.from_trimesh(apart).positions, vertices)

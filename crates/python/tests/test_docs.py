@@ -1,0 +1,28 @@
+"""The examples in the docstrings of the package and of its stubs run."""
+
+import ast
+import doctest
+import pathlib
+
+import pytest
+
+import isochore
+
+PACKAGE = pathlib.Path(isochore.__file__).parent
+DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef)
+
+
+def examples():
+    for path in [PACKAGE / "__init__.py", PACKAGE / "__init__.pyi"]:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            text = ast.get_docstring(node) if isinstance(node, DOCUMENTED) else None
+            if text and ">>>" in text:
+                yield pytest.param(text, id=f"{path.name}-{getattr(node, 'name', 'module')}")
+
+
+@pytest.mark.parametrize("text", examples())
+def test_examples_run(text):
+    example = doctest.DocTestParser().get_doctest(text, {}, "example", None, None)
+    output = []
+    result = doctest.DocTestRunner().run(example, out=output.append)
+    assert result.attempted > 0 and result.failed == 0, "".join(output)
