@@ -1,4 +1,4 @@
-"""The add-on on a cube with everything on it that a mesh of Blender carries."""
+"""The add-on on a cube with all kinds of attributes of a Blender mesh."""
 
 import bpy  # before bmesh and mathutils, which come with it
 import bmesh
@@ -11,7 +11,7 @@ from mathutils import Vector
 BALL = """
 recipe = 1
 [target]
-mesh = "whatever.obj"
+mesh = "unused.obj"
 [tools.ball]
 shape = { kind = "sphere", radius = 0.5 }
 support = 0.4
@@ -24,7 +24,7 @@ max_edge = 0.25
 [promise]
 volume = 1e-6
 """
-"""Presses a ball into the top of a cube that stands at x = 3. The add-on never reads the file of the target."""
+"""Presses a ball into the top of a cube at x = 3. The add-on never reads the file of the target."""
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -36,7 +36,7 @@ def addon():
 
 @pytest.fixture
 def cube():
-    """A cube of edge 2 in 4 x 4 quads a side, at x = 3 and scaled by 2 from half its size."""
+    """A cube of edge 1 with 4 x 4 quads per side, scaled by 2 and placed at x = 3."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.mesh.primitive_cube_add(size=1)
     cube = bpy.context.object
@@ -72,7 +72,7 @@ def rgba(positions):
 
 
 def on_ridge(mesh, rest):
-    """By edge: whether it lies on an edge of the cube, so that both its ends are on the same two sides."""
+    """Whether each edge is on an edge of the cube, so that both its ends are on the same two sides."""
     ends = rest[read(mesh.edges, "vertices", 2, np.int32)]
     return ((np.abs(ends) > 0.5 - 1e-6).all(axis=1) & (np.abs(ends[:, 0] - ends[:, 1]) < 1e-6)).sum(axis=1) == 2
 
@@ -90,14 +90,14 @@ def volume(target):
 
 
 def weights(target, name):
-    """By vertex; NaN where it is no member."""
+    """Weight of each vertex, or NaN if it is not a member."""
     group = target.vertex_groups[name].index
     found = ([g.weight for g in vertex.groups if g.group == group] for vertex in target.data.vertices)
     return np.array([weight[0] if weight else np.nan for weight in found])
 
 
 def by_side(target, rest):
-    """UVs of the first layer as an affine function of the rest position, one for each side of the cube."""
+    """Rest positions (as rows of an affine fit) and UVs of the first layer for each side of the cube."""
     mesh = target.data
     vertices = read(mesh.loops, "vertex_index", 1, np.int32)
     uvs = read(mesh.uv_layers["UVMap"].data, "uv", 2, np.float32)
@@ -111,7 +111,7 @@ def by_side(target, rest):
     return {side: [np.vstack(part) for part in zip(*rows)] for side, rows in maps.items()}
 
 
-def test_everything_on_a_mesh_comes_through(cube):
+def test_all_attributes_are_kept(cube):
     mesh = cube.data
     before = volume(cube)
     rest = read(mesh.vertices, "co", 3, np.float32)
@@ -120,10 +120,10 @@ def test_everything_on_a_mesh_comes_through(cube):
     assert deform(BALL) == {"FINISHED"}
     assert len(mesh.polygons) > 1000 and not mesh.validate(verbose=True)
     positions = read(mesh.vertices, "co", 3, np.float32)
-    # Positions of 24 bits are off by 6e-8 at most, over an area of 24: 1.4e-6 of 8, were all off alike.
+    # Positions with 24 bits have an error of at most 6e-8. Over an area of 24, that is at most 1.4e-6 of a volume of 8.
     assert volume(cube) == pytest.approx(before, rel=2e-7)
 
-    # Colors were the position at rest, so they tell where every vertex came from.
+    # Colors encode the position at rest, so they identify the source of every vertex.
     colors = read(mesh.color_attributes["painted"].data, "color", 4, np.float32)
     old, now_rest = len(rest), colors[:, :3] - 0.5
     assert np.array_equal(colors[:old], rgba(rest))
@@ -141,9 +141,9 @@ def test_everything_on_a_mesh_comes_through(cube):
     for side, (rows, uvs) in after.items():
         assert uvs == pytest.approx(rows @ sides[side], abs=1e-5), "a corner left its island"
 
-    for name, was in old_weights.items():
+    for name, expected in old_weights.items():
         now = weights(cube, name)
-        assert np.array_equal(now[:old], was, equal_nan=True)
+        assert np.array_equal(now[:old], expected, equal_nan=True)
         assert np.nanmin(now) >= 0 and np.nanmax(now) <= 1 and np.isfinite(now[old:]).any()
 
     assert [material.name for material in mesh.materials] == ["sides", "top"]
@@ -152,7 +152,7 @@ def test_everything_on_a_mesh_comes_through(cube):
     assert np.array_equal(read(mesh.attributes["sharp_edge"].data, "value", 1, bool), on_ridge(mesh, now_rest))
 
 
-def test_a_mirrored_object_is_deformed_alike(cube):
+def test_a_mirrored_object(cube):
     cube.scale = (-2, 2, 2)
     cube.rotation_euler = (0, 0, 0.3)
     bpy.context.view_layer.update()
@@ -177,7 +177,7 @@ def test_a_loose_vertex_stays(cube):
     assert tuple(cube.data.vertices[loose].co) == (0, 0, -5) and weights(cube, "right")[loose] == 0.25
 
 
-def test_polygons_stay_where_nothing_is_refined(cube):
+def test_polygons_are_kept_without_refinement(cube):
     rest = read(cube.data.vertices, "co", 3, np.float32)
     assert deform(BALL.replace("max_edge = 0.25", "enabled = false")) == {"FINISHED"}
     assert {len(polygon.vertices) for polygon in cube.data.polygons} == {4}
@@ -198,14 +198,14 @@ def test_a_recipe_from_a_file(cube, tmp_path):
         (BALL.replace("keys", "kees"), "kees"),
     ],
 )
-def test_what_is_wrong_is_reported(cube, recipe, message):
+def test_invalid_recipes_are_reported(cube, recipe, message):
     rest = read(cube.data.vertices, "co", 3, np.float32)
     with pytest.raises(RuntimeError, match=message):
         deform(recipe)
     assert np.array_equal(read(cube.data.vertices, "co", 3, np.float32), rest)
 
 
-def test_shape_keys_are_refused(cube):
+def test_rejects_shape_keys(cube):
     cube.shape_key_add(name="Basis")
     with pytest.raises(RuntimeError, match="shape keys"):
         deform(BALL)
@@ -213,7 +213,7 @@ def test_shape_keys_are_refused(cube):
 
 @pytest.mark.parametrize("refine", [True, False])
 @pytest.mark.parametrize("scale", [(2, 2, 2), (-2, 2, 2)])
-def test_custom_normals_turn_with_the_surface(cube, refine, scale):
+def test_custom_normals_rotate_with_the_surface(cube, refine, scale):
     cube.scale = scale
     bpy.context.view_layer.update()
     mesh = cube.data
@@ -228,9 +228,9 @@ def test_custom_normals_turn_with_the_surface(cube, refine, scale):
     old = vertices < len(rest)
     before = rest[vertices[old]] / np.linalg.norm(rest[vertices[old]], axis=1, keepdims=True)
     along = (normals[old] * before).sum(axis=1)
-    # Where nothing moves they are as they were, up to Blender's 16 bits; where the ball goes in, they lean.
+    # Normals of unmoved vertices are unchanged up to Blender's 16 bits. Normals at the ball are tilted.
     assert along[rest[vertices[old], 2] < 0] == pytest.approx(1, abs=1e-3) and along.min() < 0.99
-    # Nowhere do they turn to the other side.
+    # No normal points to the other side.
     facing = [polygon.normal.dot(Vector(normals[loop])) for polygon in mesh.polygons for loop in polygon.loop_indices]
     assert min(facing) > 0
 

@@ -1,4 +1,4 @@
-"""A textured, skinned cylinder goes to a GLB file, through a refined deformation, and back into Blender."""
+"""A textured, skinned cylinder is written to GLB, deformed with refinement, and read back into Blender."""
 
 import json
 import math
@@ -15,7 +15,7 @@ from mathutils import Matrix, Quaternion, Vector
 from mathutils.bvhtree import BVHTree
 
 PICTURES = pathlib.Path(__file__).resolve().parents[3] / "target" / "blender" / "pictures"
-"""Before and after, at rest and posed, to be looked at."""
+"""Folder of pictures before and after, at rest and posed, for visual inspection."""
 
 SEGMENTS, RINGS = 32, 12
 
@@ -25,7 +25,7 @@ SIZE = 200, 240
 CAMERA = Matrix.Translation((1.2, -4.2, 1.6)) @ Vector((1.2, -4.2, 1.5)).to_track_quat("Z", "Y").to_matrix().to_4x4()
 
 TURN = Quaternion((0, 1, 0), math.radians(30))
-"""What the upper bone turns by."""
+"""Rotation of the upper bone."""
 
 COLORS = {
     "yellow": (0.79, 0.6, 0.033),
@@ -39,7 +39,7 @@ COLORS = {
 RECIPE = {
     "recipe": 1,
     "tools": {"ball": {"shape": {"kind": "sphere", "radius": 0.35}, "support": 0.3}},
-    # glTF has y up: this comes from where the camera stands.
+    # glTF has y up. The ball comes from the direction of the camera.
     "stroke": [{"kind": "move", "tool": "ball", "keys": [{"at": [0, 0.3, 1.2]}, {"at": [0, 0.3, 0.65]}]}],
     "refine": {"max_edge": 0.06},
     "promise": {"volume": 1e-6},
@@ -48,7 +48,7 @@ RECIPE = {
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
-    """The GLB file that Blender wrote, what became of it, and the result."""
+    """The GLB file that Blender wrote, the deformed file, and the result."""
     folder = tmp_path_factory.mktemp("gltf")
     empty_scene()
     draw_cylinder()
@@ -65,7 +65,7 @@ def empty_scene():
 
 
 def draw_cylinder():
-    """A cylinder of height 2 about z, its side in a checked texture, its caps plain, on two bones."""
+    """Creates a cylinder of height 2 about z on two bones, with a checkered side and plain caps."""
     shape = bmesh.new()
     angles = [2 * math.pi * i / SEGMENTS for i in range(SEGMENTS)]
     heights = [2 * j / RINGS - 1 for j in range(RINGS + 1)]
@@ -107,7 +107,7 @@ def draw_cylinder():
 
 
 def checks():
-    """16 by 8 fields of two colors, one in a third color."""
+    """Creates an image of 16 by 8 fields in two colors, and one field in a third color."""
     rows, columns = np.mgrid[0:128, 0:256] // 16
     pixels = np.where(((rows + columns) % 2 == 0)[..., None], [0.9, 0.8, 0.2, 1], [0.1, 0.3, 0.7, 1])
     pixels[(rows == 5) & (columns == 12)] = [0.8, 0.1, 0.1, 1]
@@ -118,18 +118,18 @@ def checks():
 
 
 def material(name, image):
-    made = bpy.data.materials.new(name)
-    shader = made.node_tree.nodes["Principled BSDF"]
+    result = bpy.data.materials.new(name)
+    shader = result.node_tree.nodes["Principled BSDF"]
     shader.inputs["Base Color"].default_value = (0.2, 0.6, 0.25, 1)
     if image:
-        texture = made.node_tree.nodes.new("ShaderNodeTexImage")
+        texture = result.node_tree.nodes.new("ShaderNodeTexImage")
         texture.image = image
-        made.node_tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
-    return made
+        result.node_tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
+    return result
 
 
 def chunks(path):
-    """The JSON and the binary part of a GLB file."""
+    """Returns the JSON and the binary part of a GLB file."""
     data = path.read_bytes()
     length = struct.unpack_from("<I", data, 12)[0]
     return json.loads(data[20 : 20 + length]), data[28 + length :]
@@ -164,7 +164,7 @@ def influences(path):
         yield accessor(path, held["WEIGHTS_0"]).astype(float), names[accessor(path, held["JOINTS_0"])]
 
 
-def test_document_keeps_what_it_had(files):
+def test_the_document_is_kept(files):
     before, after, result = files
     old, new = chunks(before)[0], chunks(after)[0]
     assert images(after) == images(before)
@@ -193,18 +193,18 @@ def test_document_keeps_what_it_had(files):
     assert any("mesh" in node and "skin" in node for node in new["nodes"])
 
 
-def test_weights_are_shares_of_the_same_joints(files):
+def test_weights_belong_to_the_same_joints(files):
     before, after, _ = files
     most = max(int((weights > 0).sum(axis=1).max()) for weights, _ in influences(before))
     for weights, joints in influences(after):
         assert weights.min() >= 0 and (weights > 0).sum(axis=1).max() <= most
-        # Four numbers of single precision.
+        # Rounding error of four numbers in single precision.
         assert weights.sum(axis=1) == pytest.approx(1, abs=4e-7)
         assert set(joints[weights > 0]) <= {"lower", "upper"}
 
 
 def imported(path):
-    """The mesh and the armature of a file, in an empty scene."""
+    """Imports a file into an empty scene. Returns its mesh and its armature."""
     empty_scene()
     bpy.ops.import_scene.gltf(filepath=str(path), merge_vertices=True)
     kinds = {thing.type: thing for thing in bpy.data.objects if thing.name != "Icosphere"}
@@ -212,7 +212,7 @@ def imported(path):
 
 
 def posed(cylinder, armature):
-    """Positions in the world with the upper bone turned by `TURN`."""
+    """Returns positions in world space with the upper bone rotated by `TURN`."""
     bone = armature.pose.bones["upper"]
     bone.rotation_mode = "QUATERNION"
     frame = bone.bone.matrix_local.to_quaternion()
@@ -223,32 +223,32 @@ def posed(cylinder, armature):
     return positions @ np.array(cylinder.matrix_world)[:3, :3].T + np.array(cylinder.matrix_world)[:3, 3]
 
 
-def blended(rest, share):
-    """Linear blend skinning: positions whose `share` turns with the upper bone."""
+def blended(rest, weights):
+    """Linear blend skinning with the weights of the upper bone."""
     turned = rest @ np.array(TURN.to_matrix()).T
-    return rest + share[:, None] * (turned - rest)
+    return rest + weights[:, None] * (turned - rest)
 
 
 @pytest.mark.parametrize("which", ["before", "after"])
-def test_blender_poses_it(files, which):
+def test_blender_poses_the_file(files, which):
     cylinder, armature = imported(files[which == "after"])
     rest = read(cylinder.data.vertices, "co", 3, np.float32)
     world = np.array(cylinder.matrix_world)
     rest = rest @ world[:3, :3].T + world[:3, 3]
-    # From the weights that Blender read.
+    # Weights that Blender read.
     upper = cylinder.vertex_groups["upper"].index
-    share = np.array([sum(g.weight for g in vertex.groups if g.group == upper) for vertex in cylinder.data.vertices])
-    assert posed(cylinder, armature) == pytest.approx(blended(rest, share), abs=1e-5)
-    # Weights were linear in the height at rest, and cut off. What the ball moved has kept those it had.
+    weights = np.array([sum(g.weight for g in vertex.groups if g.group == upper) for vertex in cylinder.data.vertices])
+    assert posed(cylinder, armature) == pytest.approx(blended(rest, weights), abs=1e-5)
+    # Weights are a clamped linear function of the height at rest. Moved vertices keep their weights.
     untouched = rest[:, 2] < -0.4
-    assert untouched.any() and share[untouched] == pytest.approx(np.clip(0.5 + rest[untouched, 2], 0, 1), abs=0.02)
+    assert untouched.any() and weights[untouched] == pytest.approx(np.clip(0.5 + rest[untouched, 2], 0, 1), abs=0.02)
     assert {slot.material.name for slot in cylinder.material_slots} == {"checked", "plain"}
     assert [image.size[:] for image in bpy.data.images if image.name == "checks"] == [(256, 128)]
 
 
 @pytest.mark.parametrize("is_posed", [False, True])
 @pytest.mark.parametrize("which", ["before", "after"])
-def test_blender_shows_it(files, which, is_posed):
+def test_blender_renders_the_file(files, which, is_posed):
     path = files[which == "after"]
     cylinder, armature = imported(path)
     if is_posed:
@@ -256,26 +256,26 @@ def test_blender_shows_it(files, which, is_posed):
     picture = render(which + "-posed" * is_posed)
     expected = traced(path, is_posed)
     is_covered, seen = picture[..., 3] > 0.5, colors(picture)
-    # Not on the outline, nor on borders of fields and folds, where a pixel is a mixture.
+    # Pixels on the outline, at borders of fields and at folds have mixed colors, so they are excluded.
     framed = np.pad(expected, 1)
     is_inside = np.ones(expected.shape, bool)
     for up, across in [(0, 1), (1, 0), (1, 2), (2, 1)]:
         is_inside &= expected == framed[up:, across:][: SIZE[1], : SIZE[0]]
-    # Colors have borders of 3 pixels in fields of 16 or more, and 40 such fields are in sight.
+    # Fields of at least 16 pixels have borders of 3 pixels, and 40 fields are visible.
     assert is_inside.mean() > 0.9 and is_inside[expected > 0].mean() > 0.6
-    assert np.array_equal(is_covered[is_inside], expected[is_inside] > 0), "holes, or what should not be there"
+    assert np.array_equal(is_covered[is_inside], expected[is_inside] > 0), "holes or extra surface"
     is_inside &= is_covered
     assert (seen[is_inside] != expected[is_inside]).mean() < 1e-3
-    # Even light leaves no place black: what lies deepest still has a fiftieth of it.
+    # Uniform light leaves no pixel black: the deepest points still receive a fiftieth of it.
     assert picture[is_inside][:, :3].max(axis=1).min() > 0.02 ** (1 / 2.2)
-    share = dict(zip(COLORS, np.bincount(seen[is_inside], minlength=len(COLORS) + 1)[1:] / is_inside.sum(), strict=True))
-    assert share["yellow"] > 0.2 and share["blue"] > 0.2 and share["green"] > 0.05
-    assert share["red"] > 0.01
-    assert share["inside"] == 0
+    fraction = dict(zip(COLORS, np.bincount(seen[is_inside], minlength=len(COLORS) + 1)[1:] / is_inside.sum(), strict=True))
+    assert fraction["yellow"] > 0.2 and fraction["blue"] > 0.2 and fraction["green"] > 0.05
+    assert fraction["red"] > 0.01
+    assert fraction["inside"] == 0
 
 
 def render(name):
-    """Traces a small picture of the scene in even light, in which the inside of the surface is magenta: rows from below, RGBA."""
+    """Renders the scene in uniform light, with the inside of the surface in magenta. Returns RGBA rows from the bottom."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     scene = bpy.context.scene
     scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
@@ -309,7 +309,7 @@ def show_inside(material):
 
 
 def colors(picture):
-    """By pixel, the number of the color of `COLORS` whose direction is nearest, from 1."""
+    """Returns, for each pixel, the number from 1 of the color in `COLORS` with the closest direction."""
     light = picture[..., :3] ** 2.2
     light /= np.maximum(np.linalg.norm(light, axis=2, keepdims=True), 1e-6)
     directions = np.array(list(COLORS.values()))
@@ -318,7 +318,7 @@ def colors(picture):
 
 
 def traced(path, is_posed):
-    """By pixel, the number of the color that the camera should see, from the arrays of the file alone; 0 beside the surface."""
+    """Returns the expected color number of each pixel, computed from the arrays of the file; 0 outside the surface."""
     mesh = isochore.Mesh.read(path)
     # glTF has y up.
     positions = mesh.positions @ np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
@@ -344,9 +344,9 @@ def traced(path, is_posed):
         if mesh.materials[mesh.triangle_materials[triangle]] == "plain":
             seen[row, column] = 3
             continue
-        shares = np.linalg.lstsq(np.stack([b - a, c - a], axis=1), np.array(point) - a, rcond=None)[0]
-        u, v = np.array([1 - shares.sum(), *shares]) @ mesh.uvs[0][triangle]
-        # glTF counts rows of images from above.
+        coordinates = np.linalg.lstsq(np.stack([b - a, c - a], axis=1), np.array(point) - a, rcond=None)[0]
+        u, v = np.array([1 - coordinates.sum(), *coordinates]) @ mesh.uvs[0][triangle]
+        # glTF counts image rows from the top.
         across, up_rows = int(u * 16), int((1 - v) * 8)
         seen[row, column] = 4 if (up_rows, across) == (5, 12) else 1 + (up_rows + across) % 2
     return seen

@@ -1,6 +1,8 @@
-"""Object > Deform by Recipe: the active mesh takes the place of the mesh that the recipe names as its target.
+"""Object > Deform by Recipe: deforms the active mesh by an isochore recipe.
 
-Blender's Python needs the package too: `pip install` it into that, or add its wheel to `blender_manifest.toml`.
+The active mesh replaces the target that the recipe names. The Python package `isochore` must be
+installed in Blender's Python: install it there with pip, or add its wheel to
+`blender_manifest.toml`.
 """
 
 import json
@@ -13,22 +15,22 @@ import isochore
 
 from .deformation import Deformation
 
-PROBLEMS = isochore.Error, OSError, ValueError
-"""What is told to the user."""
+REPORTED = isochore.Error, OSError, ValueError
+"""Exceptions that are reported to the user."""
 
 INTERVAL = 0.1
-"""Seconds from one look at the work to the next."""
+"""Seconds between two updates of the progress display."""
 
 
 class OBJECT_OT_isochore_deform(bpy.types.Operator):
-    """Deform the active mesh by a recipe of isochore, in world space. Where it is refined it becomes triangles"""
+    """Deform the active mesh by an isochore recipe in world space. Refinement triangulates the mesh"""
 
     bl_idname = "object.isochore_deform"
     bl_label = "Deform by Recipe"
     bl_options = {"REGISTER", "UNDO"}
 
-    filepath: bpy.props.StringProperty(name="Recipe", description="TOML or JSON file", subtype="FILE_PATH")
-    text: bpy.props.StringProperty(name="Text", description="Text block with the recipe, instead of a file")
+    filepath: bpy.props.StringProperty(name="Recipe", description="Recipe file, TOML or JSON", subtype="FILE_PATH")
+    text: bpy.props.StringProperty(name="Text", description="Text block that contains the recipe. If set, no file is read")
     filter_glob: bpy.props.StringProperty(default="*.toml;*.json", options={"HIDDEN"})
 
     @classmethod
@@ -37,7 +39,7 @@ class OBJECT_OT_isochore_deform(bpy.types.Operator):
 
     deformation = None
     is_interactive = False
-    """Whether to work beside the window, which shows how far it is and where Esc stops it; scripts wait for the result."""
+    """Whether to run in the background, with progress in the status bar and Esc to stop. Scripts wait for the result."""
 
     def invoke(self, context, event):
         self.is_interactive = True
@@ -50,8 +52,8 @@ class OBJECT_OT_isochore_deform(bpy.types.Operator):
         manager = context.window_manager
         try:
             self.deformation = Deformation(context.object, self._recipe())
-        except PROBLEMS as problem:
-            return self._fail(problem)
+        except REPORTED as error:
+            return self._fail(error)
         manager.progress_begin(0, 1)
         if self.is_interactive:
             self.deformation.start()
@@ -62,7 +64,7 @@ class OBJECT_OT_isochore_deform(bpy.types.Operator):
         return self._finish(context)
 
     def modal(self, context, event):
-        # All other events end here, so that nobody edits the mesh meanwhile.
+        # The operator consumes all other events, so that the mesh cannot be edited meanwhile.
         if event.type == "ESC":
             self.deformation.stop()
         elif event.type == "TIMER" and self.deformation.is_done():
@@ -76,7 +78,7 @@ class OBJECT_OT_isochore_deform(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def cancel(self, context):
-        # Blender closes the file, and calls this while the file is chosen, too.
+        # Blender calls this when it closes the file. It also does so while the file dialog is open.
         if self.deformation:
             self.deformation.stop()
 
@@ -86,26 +88,26 @@ class OBJECT_OT_isochore_deform(bpy.types.Operator):
             report, lost = self.deformation.finish()
         except isochore.Cancelled:
             return {"CANCELLED"}
-        except PROBLEMS as problem:
-            return self._fail(problem)
+        except REPORTED as error:
+            return self._fail(error)
         missed = [name for name, held in report["promises"].items() if not held]
         if missed:
-            self.report({"WARNING"}, "promises missed: " + ", ".join(missed))
+            self.report({"WARNING"}, "Promises not met: " + ", ".join(missed))
         if lost:
-            self.report({"WARNING"}, "attributes that could not be carried: " + ", ".join(lost))
-        change = "open" if report["volume_change"] is None else f"volume {report['volume_change']:+.1e}"
+            self.report({"WARNING"}, "Attributes lost: " + ", ".join(lost))
+        change = "open surface" if report["volume_change"] is None else f"volume change {report['volume_change']:+.1e}"
         self.report({"INFO"}, f"{report['after']['triangles']} triangles, {change}")
         return {"FINISHED"}
 
-    def _fail(self, problem):
-        self.report({"ERROR"}, str(problem))
+    def _fail(self, error):
+        self.report({"ERROR"}, str(error))
         return {"CANCELLED"}
 
     def _recipe(self):
         if not self.text:
             return pathlib.Path(bpy.path.abspath(self.filepath))
         if self.text not in bpy.data.texts:
-            raise ValueError(f"there is no text block `{self.text}`")
+            raise ValueError(f"text block `{self.text}` does not exist")
         text = bpy.data.texts[self.text].as_string()
         return json.loads(text) if text.lstrip().startswith("{") else tomllib.loads(text)
 

@@ -1,4 +1,7 @@
-"""The deformation of an object: read in Blender's thread, done in any, and written back in Blender's."""
+"""Deformation of an object.
+
+Blender's thread reads the object and writes the result back. Any thread can run the deformation.
+"""
 
 import concurrent.futures
 import threading
@@ -10,38 +13,39 @@ import isochore
 from .surface import Surface
 
 TARGET = "the active mesh"
-"""What the target is called while the recipe runs; no file of a recipe has this name."""
+"""Name of the target mesh while the recipe runs. No file has this name."""
 
 
 class Deformation:
-    """What a recipe makes of the mesh of the object `target`.
+    """Deforms the mesh of the object `target` by a recipe.
 
-    `recipe` is a path, or keys. Their lengths are those of the world. The object's own transform stays as it is.
+    `recipe` is a path or a mapping. Its lengths are in world space. The transform of the object
+    does not change.
     """
 
     def __init__(self, target, recipe):
         if target.data.shape_keys:
-            raise ValueError("a mesh with shape keys cannot be refined: apply or remove them first")
+            raise ValueError("a mesh with shape keys cannot be refined: apply or remove the shape keys first")
         self.recipe, self.to_world = recipe, np.array(target.matrix_world)
         linear = self.to_world[:3, :3]
         if np.linalg.det(linear) == 0:
-            raise ValueError("the object is scaled to nothing along some axis")
+            raise ValueError("the scale of the object is zero along an axis")
         self.surface = Surface(target, mirrored=np.linalg.det(linear) < 0)
         world = self.surface.positions @ linear.T + self.to_world[:3, 3]
         normals = self.surface.normals()
         if normals is not None:
             normals = normals @ np.linalg.inv(linear)
-        self.sent = isochore.Mesh(world, self.surface.triangles, uvs=self.surface.uvs(), normals=normals)
+        self.sent_mesh = isochore.Mesh(world, self.surface.triangles, uvs=self.surface.uvs(), normals=normals)
         self.progress = "start", 0.0
         self._stopped = threading.Event()
         self._result = concurrent.futures.Future()
 
     def start(self):
-        """Begins to work in a thread of its own."""
+        """Runs the deformation in a new thread."""
         threading.Thread(target=self.run, daemon=True).start()
 
     def run(self, show=lambda stage, done: None):
-        """Works; `finish` gives what comes of it, or raises what went wrong. `show` is told of the stage and its share done."""
+        """Runs the deformation. `finish` returns its result. Calls `show(stage, fraction)` with the progress."""
 
         def follow(stage, done):
             self.progress = stage, done
@@ -51,27 +55,27 @@ class Deformation:
         try:
             settings = {"target.mesh": TARGET}
             self._result.set_result(
-                isochore.run(self.recipe, meshes={TARGET: self.sent}, settings=settings, progress=follow)
+                isochore.run(self.recipe, meshes={TARGET: self.sent_mesh}, settings=settings, progress=follow)
             )
-        except BaseException as problem:
-            self._result.set_exception(problem)
+        except BaseException as error:
+            self._result.set_exception(error)
 
     def stop(self):
-        """Asks the work to stop, so that `finish` raises `Cancelled`, unless it is over already."""
+        """Cancels the deformation, so that `finish` raises `Cancelled`. Has no effect once it has finished."""
         self._stopped.set()
 
     def is_done(self):
-        """Whether `finish` has not to wait."""
+        """Whether the deformation has finished, so that `finish` does not wait."""
         return self._result.done()
 
     def finish(self):
-        """Gives the object its new mesh: the report, and the names of attributes that were lost."""
+        """Writes the result to the object. Returns the report and the names of lost attributes."""
         mesh, _, report = self._result.result()
-        linear, world, surface = self.to_world[:3, :3], self.sent.positions, self.surface
+        linear, world, surface = self.to_world[:3, :3], self.sent_mesh.positions, self.surface
         local = (mesh.positions - self.to_world[:3, 3]) @ np.linalg.inv(linear).T
-        # What did not move keeps its bits, which the way to the world and back would not.
-        still = np.all(mesh.positions[: len(world)] == world, axis=1)
-        local[: len(world)][still] = surface.positions[still]
+        # Vertices that did not move keep their exact positions, which a round trip through world space would change.
+        unmoved = np.all(mesh.positions[: len(world)] == world, axis=1)
+        local[: len(world)][unmoved] = surface.positions[unmoved]
         is_same = np.array_equal(mesh.triangles, surface.triangles)
         lost = surface.move(local) if is_same else surface.replace(local, mesh.triangles, mesh.uvs)
         if mesh.normals is not None:

@@ -1,4 +1,4 @@
-"""The mesh of an object as triangles, and what it carries, interpolated on the triangles that these become."""
+"""The triangles of an object, and interpolation of its attributes on the refined triangles."""
 
 import numpy as np
 
@@ -12,21 +12,27 @@ FIELDS = {
     "INT8": ("value", 1, np.int8),
     "BOOLEAN": ("value", 1, bool),
 }
-"""Where attributes of a type have their numbers, how many, and of which kind. Those of other types are lost."""
+"""Property, number of components and data type of each attribute type. Other types are lost."""
 
 ON_EDGE = 1e-7
-"""Barycentric coordinates below this are 0. If smaller than the rounding of two of them to single precision, edges cut elsewhere
-than in the middle were lost; if larger, short edges near another were taken for a part of it."""
+"""Barycentric coordinates below this are treated as 0.
+
+Smaller than the rounding error of two of them in single precision, it misses edges that are not
+split at their midpoint. Larger, it takes a short edge near another edge for a part of it.
+"""
 
 NUMBERS_IN_PART = 1 << 20
-"""Numbers of triangles are told by their quotient and remainder of this. If larger than 2^24, single precision had not all remainders;
-if smaller, not all quotients of large meshes."""
+"""Triangle numbers are stored as quotient and remainder of a division by this.
+
+Larger than 2^24, single precision cannot represent all remainders. Smaller, it cannot represent all
+quotients of large meshes.
+"""
 
 
 class Surface:
-    """Triangles of the polygons of `target`, in which every corner knows its vertex, loop and polygon.
+    """Triangles of the polygons of `target`, with the vertex, loop and polygon of every corner.
 
-    mirrored: turn the triangles over, as an object does that is scaled by a negative number.
+    mirrored: whether to reverse the triangles, as a negative scale of the object does.
     """
 
     def __init__(self, target, mirrored):
@@ -39,10 +45,11 @@ class Surface:
         self.polygons = read(faces, "polygon_index", 1, np.int32)
 
     def uvs(self):
-        """Two sets of texture coordinates that tell, after refinement, where a corner came from.
+        """Returns two sets of texture coordinates that identify the source of each refined corner.
 
-        The first is the barycentric coordinates of the second and third corner. The second is the number of the triangle, the
-        same at all corners, so that all parts of a triangle have it; single precision holds it in two parts.
+        The first set has the barycentric coordinates of the second and third corner. The second has
+        the number of the triangle, the same at all corners, so that all parts of a triangle inherit
+        it. Two components store the number in single precision.
         """
         corners = np.tile([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], (len(self.triangles), 1, 1))
         parts = np.divmod(np.arange(len(self.triangles)), NUMBERS_IN_PART)
@@ -50,23 +57,26 @@ class Surface:
         return [corners, numbers]
 
     def normals(self):
-        """Custom normals by corner, (triangles, 3, 3); None where the mesh has none."""
+        """Custom normals per corner, (triangles, 3, 3), or None if the mesh has none."""
         return read(self.mesh.corner_normals, "vector", 3, np.float32)[self.loops] if self.mesh.has_custom_normals else None
 
     def set_normals(self, normals):
-        """Gives the corners of the triangles, which `replace` may have made anew, custom normals of any length."""
+        """Sets custom normals of any nonzero length at the corners of the current triangles."""
         by_loop = np.zeros((len(self.mesh.loops), 3))
         by_loop[self.loops] = normals / np.linalg.norm(normals, axis=2, keepdims=True)
         self.mesh.normals_split_custom_set(by_loop.tolist())
 
     def move(self, positions):
-        """Moves the vertices and keeps the polygons. Returns what was lost, as `replace` does: nothing."""
+        """Moves the vertices and keeps the polygons. Returns the names of lost attributes: none."""
         self.mesh.vertices.foreach_set("co", positions.astype(np.float32).ravel())
         self.mesh.update()
         return []
 
     def replace(self, positions, triangles, uvs):
-        """Puts refined triangles, with the sets of `uvs` that came of ours, in place of the polygons. Returns what was lost."""
+        """Replaces the polygons by refined triangles. Returns the names of lost attributes.
+
+        `uvs` are the interpolated sets of `self.uvs()`.
+        """
         corners, numbers = uvs
         corners = corners.astype(float)
         weights = np.dstack([1.0 - corners.sum(axis=2), corners])[:, :: self.order, :]
@@ -82,14 +92,14 @@ class Surface:
         shown_colors = colors.active_color_index, colors.render_color_index
 
         self._rebuild(positions, triangles)
-        # Any corner of a new vertex tells where it came from. Old vertices are still the first, loose ones among them.
+        # Any corner of a new vertex identifies its source. The old vertices come first, including loose ones.
         corner = np.zeros(len(positions), int)
         corner[triangles.ravel()] = np.arange(triangles.size)
-        vertices, shares = self.triangles[source].repeat(3, axis=0)[corner], weights.reshape(-1, 3)[corner]
+        vertices, coordinates = self.triangles[source].repeat(3, axis=0)[corner], weights.reshape(-1, 3)[corner]
         old = len(self.positions)
-        vertices[:old], shares[:old] = np.arange(old)[:, None], [1.0, 0.0, 0.0]
+        vertices[:old], coordinates[:old] = np.arange(old)[:, None], [1.0, 0.0, 0.0]
         at = {
-            "POINT": (vertices, shares),
+            "POINT": (vertices, coordinates),
             "CORNER": (self.loops[source].repeat(3, axis=0), weights.reshape(-1, 3)),
             "FACE": (self.polygons[source][:, None], np.ones((len(source), 1))),
             "EDGE": self._edges(triangles, source, weights, edges),
@@ -122,19 +132,20 @@ class Surface:
         mesh.update(calc_edges=True)
 
     def _attributes(self):
-        """Names, types, domains and values of all attributes but the topology and the selection, and the names of others.
+        """Returns name, type, domain and values of each attribute, and the names of unsupported ones.
 
-        Names that begin with a dot are Blender's own, internal attributes, which it makes anew where it needs them. Custom normals are
-        stored relative to the surface, so they are given anew instead.
+        Topology and selection are excluded. Names that begin with a dot are internal attributes
+        that Blender regenerates. Custom normals are stored relative to the surface, so they are set
+        again instead.
         """
-        apart = ["position", "custom_normal"]
-        named = [a for a in self.mesh.attributes if not a.name.startswith(".") and a.name not in apart]
+        excluded = ["position", "custom_normal"]
+        named = [a for a in self.mesh.attributes if not a.name.startswith(".") and a.name not in excluded]
         lost = [a.name for a in named if a.data_type not in FIELDS]
         kept = [a for a in named if a.data_type in FIELDS]
         return [(a.name, a.data_type, a.domain, read(a.data, *FIELDS[a.data_type])) for a in kept], lost
 
     def _group_weights(self):
-        """Weights, and 1 where a vertex is a member: (vertices, groups) each."""
+        """Returns weights and memberships (1 for members), (vertices, groups) each."""
         weights = np.zeros((2, len(self.positions), len(self.target.vertex_groups)), np.float32)
         for vertex in self.mesh.vertices:
             for group in vertex.groups:
@@ -149,7 +160,7 @@ class Surface:
                 group.add([vertex], min(float(weights[vertex, index]), 1.0), "REPLACE")
 
     def _edges(self, triangles, source, weights, edges):
-        """For every new edge the old one that it is a part of, and 1; 0 where it is part of none."""
+        """Returns, for every new edge, the old edge that contains it and 1, or 0 if no old edge does."""
         count = triangles.max() + 1
         ends, old_ends = np.roll(triangles, -1, axis=1), self.triangles[source][:, :: self.order]
         at, found = np.zeros((len(self.mesh.edges), 1), int), np.zeros((len(self.mesh.edges), 1))
@@ -162,29 +173,32 @@ class Surface:
             part = edge_keys(np.stack([triangles[triangle, corner], ends[triangle, corner]], axis=1), count)
             whole = edge_keys(np.delete(old_ends, opposite, axis=1)[triangle], count)
             part = new_order[np.searchsorted(new, part, sorter=new_order)]
-            place = np.minimum(np.searchsorted(old, whole, sorter=old_order), len(old) - 1)
-            # A diagonal of a polygon is no edge.
-            place = old_order[place]
-            real = old[place] == whole
-            at[part[real], 0], found[part[real], 0] = place[real], 1.0
+            index = np.minimum(np.searchsorted(old, whole, sorter=old_order), len(old) - 1)
+            # Diagonals of polygons are not edges of the mesh.
+            index = old_order[index]
+            real = old[index] == whole
+            at[part[real], 0], found[part[real], 0] = index[real], 1.0
         return at, found
 
 
 def edge_keys(ends, count):
-    """One number for every pair of vertices, whichever comes first."""
+    """Returns one number for every unordered pair of vertices."""
     ends = np.sort(ends.astype(np.int64), axis=1)
     return ends[:, 0] * count + ends[:, 1]
 
 
 def read(collection, field, width, kind):
-    """The numbers `field` of all items of a collection, (N, width), or (N,) where there is one each."""
+    """Reads the property `field` of all items of a collection, (N, width), or (N,) if width is 1."""
     values = np.empty(len(collection) * width, kind)
     collection.foreach_get(field, values)
     return values.reshape(-1, width) if width > 1 else values
 
 
 def interpolated(values, at, weights):
-    """Sums of `values[at]` by `weights`; what is no real number is that of the heaviest, or 0 where none weighs."""
+    """Returns the sums of `values[at]` weighted by `weights`.
+
+    Values that are not floating-point are taken from the largest weight, or 0 if all weights are 0.
+    """
     if values.dtype != np.float32:
         rows, heaviest = np.arange(len(at)), weights.argmax(axis=1)
         return values[at[rows, heaviest]] * (weights[rows, heaviest] > 0)
