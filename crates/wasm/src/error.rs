@@ -1,10 +1,10 @@
-//! Errors as JavaScript knows them.
+//! Errors as JavaScript exceptions.
 
 use std::fmt::Display;
 
 use wasm_bindgen::JsError;
 
-/// An `Error` with the words of this one.
+/// Converts an error to a JavaScript `Error` with the same message.
 pub(crate) fn thrown(error: impl Display) -> JsError {
     JsError::new(&error.to_string())
 }

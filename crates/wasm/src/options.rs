@@ -1,4 +1,4 @@
-//! Options, which JavaScript gives as plain objects.
+//! Options, which JavaScript passes as plain objects.
 
 use js_sys::{JSON, Object};
 use serde::de::DeserializeOwned;
@@ -8,63 +8,64 @@ use crate::error::thrown;
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
-/** What a mesh carries. */
+/** Attributes of a mesh with V vertices and T triangles. */
 export interface MeshAttributes {
-  /** Sets of texture coordinates: u, v of the three corners of each triangle, so that seams do not open the surface. */
+  /** Sets of texture coordinates per corner, 6 T numbers each: u, v of the three corners of each triangle. Seams do not open
+   * the surface. */
   uvs?: ArrayLike<number>[];
-  /** Shading normals: x, y, z, of any length, of the three corners of each triangle. They turn with the surface. */
+  /** Shading normals per corner, 9 T numbers: x, y, z of any nonzero length. They rotate with the surface. */
   normals?: ArrayLike<number>;
-  /** Linear red, green, blue and alpha of each vertex, 0 to 1. */
+  /** Vertex colors, 4 V numbers: linear red, green, blue and alpha, 0 to 1. */
   colors?: ArrayLike<number>;
-  /** The same of the three corners of each triangle, where they differ across seams. */
+  /** Corner colors, 12 T numbers: linear red, green, blue and alpha, 0 to 1. They may differ across seams. */
   cornerColors?: ArrayLike<number>;
-  /** Names of the materials; an empty one stands for triangles without a material. */
+  /** Names of the materials. An empty name means no material. Requires `triangleMaterials`. */
   materials?: string[];
-  /** For each triangle which of the materials it has; these two need each other. */
+  /** Material index of each triangle. Requires `materials`. */
   triangleMaterials?: ArrayLike<number>;
-  /** As many joints for each vertex, row by row. */
+  /** Joint indices of each vertex, in V rows of the same length. Requires `weights`. */
   joints?: ArrayLike<number>;
-  /** A weight for each of these, which is divided by the sum of its row; zero for places that are not used. */
+  /** Weight of each entry of `joints`. Each row is normalized. Weight 0 marks an unused entry. */
   weights?: ArrayLike<number>;
 }
 
-/** How a session works. */
+/** Options of a session. */
 export interface SessionOptions {
-  /** Travel of the fastest point of the tool's surface in one time step, as a share of the support or of half the tool's shortest
-   * extent, whichever is less; at most 1. */
+  /** Time step, given as the distance that the fastest point of the tool surface travels in one step. It is a fraction, at
+   * most 1, of the support or of half the shortest extent of the tool, whichever is smaller. */
   step?: number;
-  /** Bytes that undo and redo may hold; beyond, the oldest strokes are forgotten. */
+  /** Memory budget of undo and redo, in bytes. Beyond it, the oldest strokes are removed from the history. */
   undoBytes?: number;
-  /** How triangles are weighted in vertex normals: by area, unless said otherwise. */
+  /** Weighting of triangles in vertex normals. Default: "area". */
   normals?: "area" | "angle";
-  /** Whether each stroke ends with the volume of the mesh as opened, by a small displacement of what it has moved; true unless said
-   * otherwise. */
+  /** Whether each stroke ends with the volume lock, a small displacement of the moved vertices that restores the volume of
+   * the opened mesh. Default: true. */
   lock?: boolean;
-  /** A number for each vertex of the mesh from 0, free, to 1, held: those that are held keep their bits. */
+  /** Mask weight of each vertex, from 0 (free) to 1 (masked). Vertices of weight 1 keep their exact positions. */
   weights?: ArrayLike<number>;
-  /** What else a recipe says under `mask`. */
+  /** Other keys of the `mask` table of a recipe. */
   mask?: { pins?: object[]; mirror?: object[]; fade?: number };
 }
 
-/** How one stroke works. */
+/** Options of a stroke. */
 export interface StrokeOptions {
-  /** Whether edges in the tool's reach are split, collapsed and flipped; true unless said otherwise. */
+  /** Whether edges in reach of the tool are split, collapsed and flipped. Default: true. */
   refine?: boolean;
   /** Edges longer than this are split, model units. */
   longestEdge?: number;
-  /** No split goes beyond this number of triangles. */
+  /** Splits stop at this number of triangles. */
   maxTriangles?: number;
-  /** Balls in which the triangles stay: x, y, z and radius of each, model units. */
+  /** Balls in which triangles are not refined: x, y, z and radius of each, model units. */
   keep?: ArrayLike<number>;
 }
 
-/** How a preview looks. */
+/** Options of a preview. */
 export interface PreviewOptions {
-  /** Points along the longest side of the support, 12 unless said otherwise and 64 at most. */
+  /** Number of points along the longest side of the support, at most 64. Default: 12. */
   perSide?: number;
-  /** Turn where the move begins: axis x, y, z and angle in degrees, absolute. */
+  /** Rotation at the start of the move: axis x, y, z and angle in degrees, relative to the unrotated tool. */
   startRotate?: ArrayLike<number>;
-  /** The same where it ends. */
+  /** Rotation at the end of the move, in the same form. */
   endRotate?: ArrayLike<number>;
 }
 "#;
@@ -126,33 +127,33 @@ unsafe extern "C" {
     pub fn end_rotate(this: &PreviewOptions) -> Option<Vec<f64>>;
 }
 
-/// The options, given or not, which have no other keys than these.
-pub(crate) fn options<T: JsCast>(given: Option<T>, known: &[&str]) -> Result<T, JsError> {
-    let Some(given) = given else { return Ok(Object::new().unchecked_into()) };
+/// Returns the options, or an empty object if there are none. Rejects unknown keys.
+pub(crate) fn options<T: JsCast>(options: Option<T>, known: &[&str]) -> Result<T, JsError> {
+    let Some(options) = options else { return Ok(Object::new().unchecked_into()) };
     let unknown = |key: &JsValue| key.as_string().filter(|key| !known.contains(&key.as_str()));
-    match Object::keys::<JsValue>(given.unchecked_ref()).iter().find_map(|key| unknown(&key)) {
-        Some(key) => Err(thrown(format!("unknown option `{key}`; known here: {}", known.join(", ")))),
-        None => Ok(given),
+    match Object::keys::<JsValue>(options.unchecked_ref()).iter().find_map(|key| unknown(&key)) {
+        Some(key) => Err(thrown(format!("unknown option `{key}`; known options: {}", known.join(", ")))),
+        None => Ok(options),
     }
 }
 
-/// What a recipe says under the key `place`, as an object.
-pub(crate) fn keys<T: DeserializeOwned>(place: &str, data: &JsValue) -> Result<T, JsError> {
+/// Converts an object to the part of a recipe under the key `path`.
+pub(crate) fn keys<T: DeserializeOwned>(path: &str, data: &JsValue) -> Result<T, JsError> {
     let text = JSON::stringify(data).ok().and_then(|text| text.as_string()).unwrap_or_default();
-    serde_json::from_str(&text).map_err(|error| thrown(format!("{place}: {error}")))
+    serde_json::from_str(&text).map_err(|error| thrown(format!("{path}: {error}")))
 }
 
-/// A number of things, or as many as `usual`.
-pub(crate) fn count(name: &str, given: Option<f64>, usual: usize) -> Result<usize, JsError> {
-    match given {
-        None => Ok(usual),
-        // What is more than memory has addresses for is as good as no limit.
+/// Converts an optional number to a count.
+pub(crate) fn count(name: &str, number: Option<f64>, default: usize) -> Result<usize, JsError> {
+    match number {
+        None => Ok(default),
+        // The conversion saturates. A count beyond the address space is no limit.
         Some(count) if count >= 0.0 && count.fract() == 0.0 => Ok(count as usize),
-        Some(other) => Err(thrown(format!("{name} is a whole number, 0 or more, not {other}"))),
+        Some(other) => Err(thrown(format!("{name} must be a nonnegative integer, not {other}"))),
     }
 }
 
-/// Just as many numbers as are wanted.
+/// Exactly `N` numbers.
 pub(crate) fn numbers<const N: usize>(values: &[f64]) -> Result<[f64; N], JsError> {
-    values.try_into().map_err(|_| thrown(format!("{N} numbers are wanted, not {}", values.len())))
+    values.try_into().map_err(|_| thrown(format!("expected {N} numbers, not {}", values.len())))
 }

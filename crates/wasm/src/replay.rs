@@ -1,4 +1,4 @@
-//! Recipes carried out.
+//! Replay of recipes on meshes and points.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub struct Recipe {
     meshes: Meshes,
 }
 
-/// What became of a recipe's target.
+/// Result of a recipe.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Replay {
@@ -29,26 +29,27 @@ pub struct Replay {
 
 #[wasm_bindgen]
 impl Recipe {
-    /// Reads a recipe: JSON where it begins with a brace, TOML otherwise.
+    /// Parses a recipe, as JSON if it begins with a brace and as TOML otherwise. Throws if it is
+    /// invalid.
     #[wasm_bindgen(constructor)]
     pub fn new(text: String) -> Result<Recipe, JsError> {
         let recipe = RecipeData::parse(&text, Format::of_text(&text), &[]).map_err(thrown)?;
         Ok(Self { text, recipe, meshes: Meshes::new() })
     }
 
-    /// Names of the meshes that it needs.
+    /// Names of the meshes that the recipe needs.
     #[wasm_bindgen(getter, js_name = meshNames)]
     pub fn mesh_names(&self) -> Vec<String> {
         self.recipe.mesh_names().into_iter().map(str::to_owned).collect()
     }
 
-    /// Gives it a mesh that it names.
+    /// Provides a mesh that the recipe names.
     #[wasm_bindgen(js_name = setMesh)]
     pub fn set_mesh(&mut self, name: String, mesh: &Mesh) {
         self.meshes.insert(name, Arc::clone(&mesh.mesh));
     }
 
-    /// Deforms the target.
+    /// Deforms the target. Throws if a mesh is missing or cannot be used.
     pub fn run(&self) -> Result<Replay, JsError> {
         let replay = replay(&self.recipe, &self.meshes, &NoProgress).map_err(thrown)?;
         let source = Source { text: self.text.as_bytes(), overrides: &[] };
@@ -57,19 +58,24 @@ impl Recipe {
         Ok(Replay { mesh: Mesh { mesh: replay.deformed.mesh.into() }, report })
     }
 
-    /// Carries points along the strokes, in place: x, y, z of each, in world coordinates, model units. Points have no surface and no
-    /// volume: there is no refinement and no lock, and stamps are refused. The target need not be given, unless a mask has weights for
-    /// its vertices. Returns what of the recipe does not apply to points.
+    /// Advects points along the strokes, in place: x, y, z of each point in world coordinates,
+    /// model units. Returns warnings about parts of the recipe that do not apply to points.
+    ///
+    /// Points have neither a surface nor a volume, so refinement and the volume lock do not apply,
+    /// and a recipe with a stamp throws. The target mesh is needed only if a mask has weights for
+    /// its vertices.
     #[wasm_bindgen(js_name = runPoints)]
     pub fn run_points(&self, points: &mut [f64]) -> Result<Vec<String>, JsError> {
         if let Some(bad) = points.iter().position(|number| !number.is_finite()) {
             return Err(thrown(format!("points: number {} of point {} is not finite", bad % 3, bad / 3)));
         }
-        let (rows, []) = points.as_chunks_mut::<3>() else { return Err(thrown("points have three numbers each")) };
+        let (rows, []) = points.as_chunks_mut::<3>() else {
+            return Err(thrown("the length of points must be a multiple of 3: three numbers per point"));
+        };
         let rows: &mut [DVec3] = cast_slice_mut(rows);
-        let carried = replay_points(&self.recipe, &self.meshes, rows, &NoProgress).map_err(thrown)?;
-        rows.copy_from_slice(&carried.points);
-        Ok(carried.warnings)
+        let advected = replay_points(&self.recipe, &self.meshes, rows, &NoProgress).map_err(thrown)?;
+        rows.copy_from_slice(&advected.points);
+        Ok(advected.warnings)
     }
 }
 
@@ -81,7 +87,7 @@ impl Replay {
         self.report.clone()
     }
 
-    /// The deformed mesh, which is taken out.
+    /// Returns the deformed mesh and frees this object.
     #[wasm_bindgen(js_name = intoMesh)]
     pub fn into_mesh(self) -> Mesh {
         self.mesh

@@ -22,16 +22,17 @@ use crate::{
     tool::Tool,
 };
 
-/// A mesh that strokes deform one after the other, with undo and redo.
+/// A mesh that strokes deform one after another, with undo and redo.
 ///
-/// Arrays that it gives are views of the module's memory. They hold until the next call that changes the session or grows that memory.
+/// Arrays are views of the memory of the module. They are valid until the next call that changes
+/// the session or grows that memory.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Session {
     session: session::Session,
 }
 
-/// Rows of the buffers that have changed: pairs of start and end.
+/// Changed rows of the buffers, as pairs of the first row and one past the last row.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Changes {
@@ -40,7 +41,8 @@ pub struct Changes {
 
 #[wasm_bindgen]
 impl Session {
-    /// Opens a session on a manifold, oriented mesh.
+    /// Opens a session on a manifold, consistently oriented mesh. Throws if the mesh or an option
+    /// cannot be used.
     #[wasm_bindgen(constructor)]
     pub fn new(mesh: &Mesh, options: Option<SessionOptions>) -> Result<Session, JsError> {
         let known = ["step", "undoBytes", "normals", "lock", "weights", "mask"];
@@ -52,7 +54,7 @@ impl Session {
         chosen.normals = match options.normals().as_deref() {
             None | Some("area") => NormalWeights::Area,
             Some("angle") => NormalWeights::Angle,
-            Some(other) => return Err(thrown(format!("normals are by \"area\" or \"angle\", not {other:?}"))),
+            Some(other) => return Err(thrown(format!("normals must be \"area\" or \"angle\", not {other:?}"))),
         };
         if let Some(mask) = options.mask() {
             chosen.mask = keys("mask", &mask)?;
@@ -64,70 +66,76 @@ impl Session {
         Ok(Self { session })
     }
 
-    /// Keeps the edges at some vertices, inserted ones included, from being split, collapsed or flipped from now on, and frees all
-    /// others.
+    /// Excludes the edges at the given vertices from splits, collapses and flips. The vertices
+    /// replace those of the previous call and may include inserted ones. Throws if one is out of
+    /// range.
     #[wasm_bindgen(js_name = freezeEdges)]
     pub fn freeze_edges(&mut self, vertices: &[u32]) -> Result<(), JsError> {
         self.session.freeze_edges(vertices).map_err(thrown)
     }
 
-    /// Begins a stroke; nothing moves before the second pose.
+    /// Begins a stroke. The first pose only places the tool; later ones move it. Throws if a stroke
+    /// is in progress.
     #[wasm_bindgen(js_name = beginStroke)]
     pub fn begin_stroke(&mut self, tool: &Tool, options: Option<StrokeOptions>) -> Result<(), JsError> {
         let options = self::options(options, &["refine", "longestEdge", "maxTriangles", "keep"])?;
-        let usual = InteractiveRefinement::default();
+        let default = InteractiveRefinement::default();
         let balls = options.keep().unwrap_or_default();
         let (balls, rest) = balls.as_chunks::<4>();
         if !rest.is_empty() {
-            return Err(thrown("keep has four numbers for each ball"));
+            return Err(thrown("the length of keep must be a multiple of 4: x, y, z and radius of each ball"));
         }
         let refinement = InteractiveRefinement {
             longest: options.longest_edge(),
-            max_triangles: count("maxTriangles", options.max_triangles(), usual.max_triangles)?,
+            max_triangles: count("maxTriangles", options.max_triangles(), default.max_triangles)?,
             keep: balls.iter().map(|&[x, y, z, radius]| ([x, y, z].into(), radius)).collect(),
-            ..usual
+            ..default
         };
         let refine = options.refine().unwrap_or(true).then_some(refinement);
         self.session.begin_stroke(&tool.tool, session::StrokeOptions { refine }).map_err(thrown)
     }
 
-    /// Moves the tool along a screw to a pose: x, y, z, model units, and optionally axis x, y, z and angle in degrees, absolute.
-    /// `time` is the host's, in seconds.
+    /// Moves the tool to a pose along a screw motion. `at` is x, y, z in model units. `rotate` is
+    /// the axis x, y, z and the angle in degrees, relative to the unrotated tool. `time` is the
+    /// time of the host in seconds and affects only the receipt.
+    ///
+    /// Throws if no stroke is in progress, a number is not finite, the axis is zero, or `time`
+    /// decreases.
     #[wasm_bindgen(js_name = moveTo)]
     pub fn move_to(&mut self, at: &[f64], rotate: Option<Vec<f64>>, time: Option<f64>) -> Result<MoveReceipt, JsError> {
         let receipt = self.session.move_to(&pose(at, rotate)?, time.unwrap_or(0.0)).map_err(thrown)?;
         Ok(MoveReceipt { receipt })
     }
 
-    /// Ends the stroke.
+    /// Ends the stroke in progress and applies the volume lock.
     #[wasm_bindgen(js_name = endStroke)]
     pub fn end_stroke(&mut self) -> Result<StrokeReceipt, JsError> {
         Ok(StrokeReceipt { receipt: self.session.end_stroke().map_err(thrown)? })
     }
 
-    /// Whether a stroke has begun and not ended.
+    /// Whether a stroke is in progress.
     #[wasm_bindgen(getter, js_name = isStrokeUnderWay)]
     pub fn is_stroke_under_way(&self) -> bool {
         self.session.is_stroke_under_way()
     }
 
-    /// Takes back the stroke under way.
+    /// Discards the stroke in progress.
     #[wasm_bindgen(js_name = cancelStroke)]
     pub fn cancel_stroke(&mut self) -> Result<(), JsError> {
         self.session.cancel_stroke().map_err(thrown)
     }
 
-    /// Takes back the last stroke, to the bit; false where there is none.
+    /// Undoes the last stroke, bit for bit. Returns false if there is no stroke to undo.
     pub fn undo(&mut self) -> Result<bool, JsError> {
         self.session.undo().map_err(thrown)
     }
 
-    /// Does again what was undone last, to the bit; false where there is nothing.
+    /// Redoes the last undone stroke, bit for bit. Returns false if there is no stroke to redo.
     pub fn redo(&mut self) -> Result<bool, JsError> {
         self.session.redo().map_err(thrown)
     }
 
-    /// What can be undone and redone.
+    /// Size of the undo history.
     #[wasm_bindgen(getter)]
     pub fn history(&self) -> History {
         History { history: self.session.history() }
@@ -139,55 +147,58 @@ impl Session {
         floats(self.session.buffers().positions.as_flattened())
     }
 
-    /// Unit normals of the render vertices.
+    /// Unit normal of each render vertex.
     #[wasm_bindgen(getter)]
     pub fn normals(&self) -> Float32Array {
         floats(self.session.buffers().normals.as_flattened())
     }
 
-    /// u, v of each render vertex in a set of texture coordinates, the first unless said otherwise; empty where there is no such set.
+    /// u, v of each render vertex in a set of texture coordinates, by default the first. Empty if
+    /// the set does not exist.
     pub fn uvs(&self, set: Option<u32>) -> Float32Array {
         floats(self.session.buffers().uvs.get(set.unwrap_or(0) as usize).map_or(&[], |uvs| uvs.as_flattened()))
     }
 
-    /// Linear red, green, blue, alpha of each render vertex; empty where the mesh has none.
+    /// Linear red, green, blue and alpha of each render vertex. Empty if the mesh has no colors.
     #[wasm_bindgen(getter)]
     pub fn colors(&self) -> Float32Array {
         floats(self.session.buffers().colors.as_flattened())
     }
 
-    /// Three render vertices of each triangle; those removed are three times zero.
+    /// Three render vertices of each triangle, or three zeros for a removed triangle.
     #[wasm_bindgen(getter)]
     pub fn indices(&self) -> Uint32Array {
         // SAFETY: as for floats.
         unsafe { Uint32Array::view(self.session.buffers().indices.as_flattened()) }
     }
 
-    /// What has changed in the buffers since the last call: at first, everything.
+    /// Returns the buffer rows that have changed since the previous call. The first call returns
+    /// everything.
     #[wasm_bindgen(js_name = takeChanges)]
     pub fn take_changes(&mut self) -> Changes {
         Changes { changes: self.session.take_changes() }
     }
 
-    /// All strokes that are done and not undone, as the JSON text of a recipe.
+    /// Returns the strokes that are in effect as a recipe in JSON, which names its target `target`.
     pub fn log(&self) -> String {
         self.session.log().to_json()
     }
 
-    /// The surface as a mesh of its own, as `positions` show it: with what the lock has added at the end of each stroke. With `lock`
-    /// false, where the flow alone has taken it, to the bits that the log gives elsewhere.
+    /// Copies the surface to a mesh. If `lock` is true (the default), positions include the
+    /// displacements of the volume lock, as the buffers do. Otherwise they are those of the flow
+    /// alone, which a replay of the log reproduces bit for bit.
     pub fn export(&self, lock: Option<bool>) -> Mesh {
         Mesh { mesh: self.session.export(lock.unwrap_or(true)).mesh.into() }
     }
 
-    /// Number in the session of each vertex of what `export` gives now, in ascending order: those that were not removed.
+    /// Session vertex of each vertex of an exported mesh, in ascending order.
     #[wasm_bindgen(getter, js_name = exportedVertices)]
     pub fn exported_vertices(&self) -> Vec<u32> {
         self.session.vertices().collect()
     }
 
-    /// For each vertex of the mesh as opened the vertex that stands in its place: itself, or the one that collapses have merged it
-    /// into.
+    /// Returns, for each vertex of the opened mesh, the vertex that represents it: the vertex
+    /// itself, or the one that collapses have merged it into.
     #[wasm_bindgen(js_name = vertexMap)]
     pub fn vertex_map(&self) -> Vec<u32> {
         self.session.vertex_map()
@@ -196,31 +207,31 @@ impl Session {
 
 #[wasm_bindgen]
 impl Changes {
-    /// Grows whenever a buffer has moved in memory.
+    /// Increases whenever a buffer has moved in memory.
     #[wasm_bindgen(getter)]
     pub fn generation(&self) -> f64 {
         self.changes.generation as f64
     }
 
-    /// Of positions.
+    /// Rows of `positions`.
     #[wasm_bindgen(getter)]
     pub fn positions(&self) -> Vec<u32> {
         pairs(&self.changes.positions)
     }
 
-    /// Of normals.
+    /// Rows of `normals`.
     #[wasm_bindgen(getter)]
     pub fn normals(&self) -> Vec<u32> {
         pairs(&self.changes.normals)
     }
 
-    /// Of texture coordinates, colors and origins.
+    /// Rows of texture coordinates, colors and origins.
     #[wasm_bindgen(getter)]
     pub fn attributes(&self) -> Vec<u32> {
         pairs(&self.changes.attributes)
     }
 
-    /// Of indices, in triangles.
+    /// Rows of `indices`, one per triangle.
     #[wasm_bindgen(getter)]
     pub fn indices(&self) -> Vec<u32> {
         pairs(&self.changes.indices)
@@ -228,7 +239,7 @@ impl Changes {
 }
 
 fn floats(values: &[f32]) -> Float32Array {
-    // SAFETY: nothing is allocated before JavaScript has the view; what happens to it later is said where views are given.
+    // SAFETY: nothing is allocated before JavaScript receives the view. The documentation states when it becomes invalid.
     unsafe { Float32Array::view(values) }
 }
 
@@ -236,7 +247,7 @@ fn pairs(ranges: &[DirtyRange]) -> Vec<u32> {
     ranges.iter().flat_map(|range| [range.start, range.end]).collect()
 }
 
-/// A pose from x, y, z and an axis x, y, z with an angle in degrees; without these, not turned.
+/// Converts a position and an optional rotation, axis and angle in degrees, to a pose.
 fn pose(at: &[f64], rotate: Option<Vec<f64>>) -> Result<Pose, JsError> {
     let rotate = rotate.as_deref().unwrap_or(&[0.0, 0.0, 1.0, 0.0]);
     Key { at: numbers(at)?, rotate: numbers(rotate)? }.pose().map_err(thrown)

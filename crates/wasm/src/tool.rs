@@ -10,7 +10,7 @@ use crate::{error::thrown, mesh::Mesh, options::keys};
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
-/** What a recipe says of a tool. */
+/** Description of a tool, as in a recipe. */
 export interface ToolDescription {
   shape: { kind: string; [key: string]: unknown };
   support: number;
@@ -25,7 +25,7 @@ unsafe extern "C" {
     pub type ToolDescription;
 }
 
-/// A tool ready to work, made once and shared between strokes and sessions.
+/// A prepared tool. It can be used by any number of strokes and sessions.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Tool {
@@ -34,8 +34,11 @@ pub struct Tool {
 
 #[wasm_bindgen]
 impl Tool {
-    /// Makes a tool from what a recipe says of one: `{shape: {kind: "sphere", radius: 0.1}, support: 0.1}`. `name` is what the log
-    /// calls it; `mesh` is the mesh of a shape of that kind, whose distance is sampled now.
+    /// Creates a tool from its description in a recipe: `{shape: {kind: "sphere", radius: 0.1},
+    /// support: 0.1}`. `name` identifies the tool in the log of a session. `mesh` is the mesh of a
+    /// shape of kind `mesh`, whose distance is sampled during this call.
+    ///
+    /// Throws if the description is invalid.
     #[wasm_bindgen(constructor)]
     pub fn new(name: &str, description: &ToolDescription, mesh: Option<Mesh>) -> Result<Tool, JsError> {
         let description: recipe::Tool = keys(&format!("tools.{name}"), description)?;
@@ -47,13 +50,13 @@ impl Tool {
         Ok(Self { tool: Arc::new(tool) })
     }
 
-    /// What the log calls it.
+    /// Name of the tool in the log of a session.
     #[wasm_bindgen(getter)]
     pub fn name(&self) -> String {
         self.tool.name().to_owned()
     }
 
-    /// What there is to know about how the description was understood.
+    /// Warnings about the description.
     #[wasm_bindgen(getter)]
     pub fn warnings(&self) -> Vec<String> {
         self.tool.warnings().to_vec()

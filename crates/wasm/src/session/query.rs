@@ -1,4 +1,4 @@
-//! What a host asks of a session. Arrays that answers hold are copies, which stay.
+//! Queries on a session. Arrays in results are copies.
 
 use glam::DVec3;
 use isochore_mesh::NONE;
@@ -12,24 +12,24 @@ use crate::{
     tool::Tool,
 };
 
-/// Points along the longest side of a preview unless the host says otherwise.
+/// Default number of points along the longest side of a preview.
 const PER_SIDE: usize = 12;
 
-/// A point of the surface that a query found.
+/// A point of the surface found by a query.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Hit {
     hit: SurfaceHit,
 }
 
-/// Points around a tool and where a move would shift them: arrows to draw.
+/// Points around a tool and their displacements by a move, for display as arrows.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Preview {
     arrows: Vec<session::Arrow>,
 }
 
-/// Where render vertices come from.
+/// Sources of render vertices.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Origins {
@@ -38,34 +38,36 @@ pub struct Origins {
     weights: Vec<f64>,
 }
 
-/// Volume that the stroke under way has moved through the surface.
+/// Volumes that the stroke in progress has moved through the surface.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct MovedVolume {
-    /// Swept by parts of the surface that moved outward, cubic model units.
+    /// Volume moved outward, cubic model units.
     #[wasm_bindgen(readonly)]
     pub outward: f64,
-    /// Swept by parts of the surface that moved inward, cubic model units.
+    /// Volume moved inward, cubic model units.
     #[wasm_bindgen(readonly)]
     pub inward: f64,
 }
 
 #[wasm_bindgen]
 impl Session {
-    /// The first point of the surface on a ray.
+    /// Finds the first point of the surface along a ray. Returns undefined if the ray misses the
+    /// surface.
     pub fn pick(&self, origin: &[f64], direction: &[f64]) -> Result<Option<Hit>, JsError> {
         let [origin, direction] = [DVec3::from(numbers(origin)?), DVec3::from(numbers(direction)?)];
         Ok(self.session.pick(origin, direction).map(|hit| Hit { hit }))
     }
 
-    /// The point of the surface nearest to a point.
+    /// Finds the closest point of the surface. Returns undefined if the mesh has no triangles.
     #[wasm_bindgen(js_name = closestPoint)]
     pub fn closest_point(&self, point: &[f64]) -> Result<Option<Hit>, JsError> {
         Ok(self.session.closest_point(DVec3::from(numbers(point)?)).map(|hit| Hit { hit }))
     }
 
-    /// Numbers of the vertices that a stroke of the tool would move at a pose, given as to `moveTo`, masks apart, in ascending order.
-    /// They count as reached where the flow has left them, without what the lock has added.
+    /// Returns the vertices that a stroke of the tool would move at a pose, in ascending order. The
+    /// pose has the form described at `moveTo`. The test ignores masks and uses positions without
+    /// the displacements of the volume lock.
     #[wasm_bindgen(js_name = verticesInReach)]
     pub fn vertices_in_reach(&self, tool: &Tool, at: &[f64], rotate: Option<Vec<f64>>) -> Result<Vec<u32>, JsError> {
         let mut vertices = Vec::new();
@@ -73,7 +75,8 @@ impl Session {
         Ok(vertices)
     }
 
-    /// Where a move of a tool from one place to another would shift a lattice of points around it, masks included.
+    /// Computes the displacements of a lattice of points around a tool if it moved from `start` to
+    /// `end`. Masks apply.
     pub fn preview(
         &self,
         tool: &Tool,
@@ -88,20 +91,21 @@ impl Session {
         Ok(Preview { arrows })
     }
 
-    /// Volume that the stroke under way has moved so far; zero where there is none.
+    /// Volumes that the stroke in progress has moved; 0 if no stroke is in progress.
     #[wasm_bindgen(getter, js_name = movedVolume)]
     pub fn moved_volume(&self) -> MovedVolume {
         let moved = self.session.moved_volume();
         MovedVolume { outward: moved.outward, inward: moved.inward }
     }
 
-    /// Where render vertices come from: those from `start` to before `end`, or all. After a move, the ranges of `attributes` in its
-    /// changes tell which are new.
+    /// Returns the sources of the render vertices from `start` to `end` (exclusive), by default of
+    /// all. After a move, the `attributes` of its changes are the rows that have changed. Throws if
+    /// the range is out of bounds.
     pub fn origins(&self, start: Option<u32>, end: Option<u32>) -> Result<Origins, JsError> {
         let count = self.session.buffers().positions.len() as u32;
         let (start, end) = (start.unwrap_or(0), end.unwrap_or(count));
         if start > end || end > count {
-            return Err(thrown(format!("{start} to {end} are none of the {count} render vertices")));
+            return Err(thrown(format!("{start} to {end} is out of range: there are {count} render vertices")));
         }
         let (mut triangles, mut weights) = (Vec::new(), Vec::new());
         for render in start..end {
@@ -113,7 +117,8 @@ impl Session {
         Ok(Origins { vertices, triangles, weights })
     }
 
-    /// Volume inside the surface without the stroke under way; undefined where it is open.
+    /// Volume enclosed by the surface before any volume lock, without the stroke in progress, cubic
+    /// model units. Undefined if the surface is open.
     #[wasm_bindgen(getter)]
     pub fn volume(&self) -> Option<f64> {
         self.session.volume()
@@ -122,13 +127,13 @@ impl Session {
 
 #[wasm_bindgen]
 impl Hit {
-    /// The triangle, a row of the indices.
+    /// Triangle that contains the point: a row of `indices`.
     #[wasm_bindgen(getter)]
     pub fn triangle(&self) -> u32 {
         self.hit.triangle
     }
 
-    /// Numbers of its vertices.
+    /// Vertices of the triangle.
     #[wasm_bindgen(getter)]
     pub fn vertices(&self) -> Vec<u32> {
         self.hit.vertices.to_vec()
@@ -140,7 +145,7 @@ impl Hit {
         self.hit.point.to_array().to_vec()
     }
 
-    /// Its barycentric coordinates in the triangle: how much each of the vertices counts for it.
+    /// Barycentric coordinates of the point in the triangle.
     #[wasm_bindgen(getter)]
     pub fn weights(&self) -> Vec<f64> {
         self.hit.weights.to_array().to_vec()
@@ -152,7 +157,8 @@ impl Hit {
         self.hit.normal.to_array().to_vec()
     }
 
-    /// Along a ray in lengths of its direction; else in model units.
+    /// Distance from the query point in model units. For a ray, the distance divided by the length
+    /// of its direction.
     #[wasm_bindgen(getter)]
     pub fn distance(&self) -> f64 {
         self.hit.distance
@@ -167,7 +173,7 @@ impl Preview {
         self.arrows.iter().flat_map(|arrow| arrow.point.to_array()).collect()
     }
 
-    /// x, y, z of by how much the move carries each point, model units.
+    /// x, y, z of the displacement of each point, model units.
     #[wasm_bindgen(getter)]
     pub fn shifts(&self) -> Vec<f64> {
         self.arrows.iter().flat_map(|arrow| arrow.shift.to_array()).collect()
@@ -176,20 +182,23 @@ impl Preview {
 
 #[wasm_bindgen]
 impl Origins {
-    /// The vertex that each shows; 2³² − 1 where that was removed. The first ones are those of the mesh as opened; inserted ones
-    /// follow, and may take the numbers of others that an earlier stroke has removed.
+    /// Vertex of each render vertex, or 2³² − 1 if it has been removed. The vertices of the opened
+    /// mesh come first. Inserted vertices follow and may reuse the numbers of vertices that an
+    /// earlier stroke removed.
     #[wasm_bindgen(getter)]
     pub fn vertices(&self) -> Vec<u32> {
         self.vertices.clone()
     }
 
-    /// The triangle of the mesh as opened that each takes its attributes from; 2³² − 1 for one without triangles.
+    /// Triangle of the opened mesh that provides the attributes of each render vertex, or 2³² − 1
+    /// for a vertex without triangles.
     #[wasm_bindgen(getter)]
     pub fn triangles(&self) -> Vec<u32> {
         self.triangles.clone()
     }
 
-    /// Three barycentric coordinates in that triangle for each; zero for one without triangles.
+    /// Three barycentric coordinates in that triangle for each render vertex; zeros for a vertex
+    /// without triangles.
     #[wasm_bindgen(getter)]
     pub fn weights(&self) -> Vec<f64> {
         self.weights.clone()

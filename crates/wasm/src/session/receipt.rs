@@ -1,23 +1,23 @@
-//! What moves and strokes did.
+//! Results of moves and strokes.
 
 use isochore_sculpt::session;
 use wasm_bindgen::prelude::*;
 
-/// What one move did.
+/// Result of one move.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct MoveReceipt {
     pub(super) receipt: session::MoveReceipt,
 }
 
-/// What one stroke did.
+/// Result of one stroke.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct StrokeReceipt {
     pub(super) receipt: session::StrokeReceipt,
 }
 
-/// What can be undone and redone.
+/// Size of the undo history.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct History {
@@ -26,37 +26,38 @@ pub struct History {
 
 #[wasm_bindgen]
 impl MoveReceipt {
-    /// Vertices that moved.
+    /// Number of vertices that moved.
     #[wasm_bindgen(getter, js_name = movedVertices)]
     pub fn moved_vertices(&self) -> u32 {
         self.receipt.moved_vertices as u32
     }
 
-    /// Vertices that splits inserted.
+    /// Number of vertices that splits inserted.
     #[wasm_bindgen(getter, js_name = insertedVertices)]
     pub fn inserted_vertices(&self) -> u32 {
         self.receipt.inserted_vertices as u32
     }
 
-    /// Vertices that collapses removed.
+    /// Number of vertices that collapses removed.
     #[wasm_bindgen(getter, js_name = removedVertices)]
     pub fn removed_vertices(&self) -> u32 {
         self.receipt.removed_vertices as u32
     }
 
-    /// Edges that were flipped.
+    /// Number of flipped edges.
     #[wasm_bindgen(getter, js_name = flippedEdges)]
     pub fn flipped_edges(&self) -> u32 {
         self.receipt.flipped_edges as u32
     }
 
-    /// Whether the limit on triangles kept edges from being split.
+    /// Whether the limit on triangles prevented splits.
     #[wasm_bindgen(getter, js_name = isLimited)]
     pub fn is_limited(&self) -> bool {
         self.receipt.is_limited
     }
 
-    /// Edges that stay too long because the stroke has stirred the surface there too much for a split to help.
+    /// Number of edges that remain too long because the stroke has distorted the surface too much
+    /// for a split to help.
     #[wasm_bindgen(getter, js_name = refusedSplits)]
     pub fn refused_splits(&self) -> u32 {
         self.receipt.refused_splits as u32
@@ -65,99 +66,101 @@ impl MoveReceipt {
 
 #[wasm_bindgen]
 impl StrokeReceipt {
-    /// Moves that it was made of.
+    /// Number of moves; the first pose does not count.
     #[wasm_bindgen(getter)]
     pub fn moves(&self) -> u32 {
         self.receipt.moves as u32
     }
 
-    /// Vertices there before that it moved or removed.
+    /// Number of existing vertices that the stroke moved or removed.
     #[wasm_bindgen(getter, js_name = touchedVertices)]
     pub fn touched_vertices(&self) -> u32 {
         self.receipt.touched_vertices as u32
     }
 
-    /// Vertices that splits inserted.
+    /// Number of vertices that splits inserted.
     #[wasm_bindgen(getter, js_name = insertedVertices)]
     pub fn inserted_vertices(&self) -> u32 {
         self.receipt.inserted_vertices as u32
     }
 
-    /// Vertices that collapses removed.
+    /// Number of vertices that collapses removed.
     #[wasm_bindgen(getter, js_name = removedVertices)]
     pub fn removed_vertices(&self) -> u32 {
         self.receipt.removed_vertices as u32
     }
 
-    /// Edges that were flipped.
+    /// Number of flipped edges.
     #[wasm_bindgen(getter, js_name = flippedEdges)]
     pub fn flipped_edges(&self) -> u32 {
         self.receipt.flipped_edges as u32
     }
 
-    /// Whether the limit on triangles kept edges from being split.
+    /// Whether the limit on triangles prevented splits.
     #[wasm_bindgen(getter, js_name = isLimited)]
     pub fn is_limited(&self) -> bool {
         self.receipt.is_limited
     }
 
-    /// The most edges in any move that stayed too long because the stroke has stirred the surface there too much for a split to help.
+    /// Largest number of edges in any move that remained too long because the stroke has distorted
+    /// the surface too much for a split to help.
     #[wasm_bindgen(getter, js_name = refusedSplits)]
     pub fn refused_splits(&self) -> u32 {
         self.receipt.refused_splits as u32
     }
 
-    /// Signed change of the volume before any lock, cubic model units: the sum of those by flow, splits and remeshing. Undefined, as
-    /// these are, where the surface is open.
+    /// Signed volume change before the lock, cubic model units: the sum of the changes by flow,
+    /// splits and remeshing. These are undefined if the surface is open.
     #[wasm_bindgen(getter, js_name = volumeChange)]
     pub fn volume_change(&self) -> Option<f64> {
         self.receipt.volume.map(|volume| volume.total())
     }
 
-    /// Signed change of the volume by the flow, cubic model units.
+    /// Signed volume change by moving vertices, cubic model units.
     #[wasm_bindgen(getter, js_name = volumeFlow)]
     pub fn volume_flow(&self) -> Option<f64> {
         self.receipt.volume.map(|volume| volume.flow)
     }
 
-    /// By splits.
+    /// Signed volume change by splits, cubic model units.
     #[wasm_bindgen(getter, js_name = volumeSplits)]
     pub fn volume_splits(&self) -> Option<f64> {
         self.receipt.volume.map(|volume| volume.splits)
     }
 
-    /// By collapses and flips.
+    /// Signed volume change by collapses and flips, cubic model units.
     #[wasm_bindgen(getter, js_name = volumeRemeshing)]
     pub fn volume_remeshing(&self) -> Option<f64> {
         self.receipt.volume.map(|volume| volume.remeshing)
     }
 
-    /// Bound on the rounding in these.
+    /// Bound on the rounding error of these changes, cubic model units.
     #[wasm_bindgen(getter, js_name = volumeRounding)]
     pub fn volume_rounding(&self) -> Option<f64> {
         self.receipt.volume.map(|volume| volume.rounding)
     }
 
-    /// Longest displacement by the lock, model units; undefined where it was skipped.
+    /// Largest displacement by the volume lock, model units, or undefined if it was skipped.
     #[wasm_bindgen(getter, js_name = lockMaxShift)]
     pub fn lock_max_shift(&self) -> Option<f64> {
         self.receipt.lock_max_shift
     }
 
-    /// Why the lock was skipped, undefined where it acted: `off`, the session has none; `needs_closed`, the surface is open;
-    /// `no_hold`, nothing moved that the volume depends on, and the lock of the next stroke has to make up for what is missing.
+    /// Reason why the volume lock was skipped, or undefined if it was applied. `off`: the session
+    /// has it disabled. `needs_closed`: the surface is open. `no_hold`: the moved vertices cannot
+    /// change the volume, and the lock of the next stroke corrects the remaining error.
     #[wasm_bindgen(getter, js_name = lockSkipped)]
     pub fn lock_skipped(&self) -> Option<String> {
         self.receipt.lock_skipped.map(|skipped| skipped.name().to_owned())
     }
 
-    /// Bytes that undo holds for it.
+    /// Memory that undo holds for this stroke, in bytes.
     #[wasm_bindgen(getter, js_name = undoBytes)]
     pub fn undo_bytes(&self) -> f64 {
         self.receipt.undo_bytes as f64
     }
 
-    /// Older strokes that undo forgot to make room.
+    /// Number of older strokes that were removed from the history to stay within the memory budget.
     #[wasm_bindgen(getter, js_name = forgottenStrokes)]
     pub fn forgotten_strokes(&self) -> u32 {
         self.receipt.forgotten_strokes as u32
@@ -166,25 +169,26 @@ impl StrokeReceipt {
 
 #[wasm_bindgen]
 impl History {
-    /// Strokes that can be undone.
+    /// Number of strokes that can be undone.
     #[wasm_bindgen(getter)]
     pub fn undoable(&self) -> u32 {
         self.history.undoable as u32
     }
 
-    /// Strokes that can be redone.
+    /// Number of strokes that can be redone.
     #[wasm_bindgen(getter)]
     pub fn redoable(&self) -> u32 {
         self.history.redoable as u32
     }
 
-    /// Strokes that can no longer be undone.
+    /// Number of strokes that the memory budget has removed from the history. The log still
+    /// contains them.
     #[wasm_bindgen(getter)]
     pub fn forgotten(&self) -> u32 {
         self.history.forgotten as u32
     }
 
-    /// Bytes held.
+    /// Memory in use, in bytes.
     #[wasm_bindgen(getter)]
     pub fn bytes(&self) -> f64 {
         self.history.bytes as f64
