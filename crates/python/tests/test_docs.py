@@ -1,4 +1,4 @@
-"""The examples in the docstrings of the package and of its stubs run."""
+"""The examples in the docstrings of the package, in its stubs and in its README run."""
 
 import ast
 import doctest
@@ -9,10 +9,12 @@ import pytest
 import isochore
 
 PACKAGE = pathlib.Path(isochore.__file__).parent
+README = pathlib.Path(__file__).resolve().parents[1] / "README.md"
 DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef)
 
 
 def examples():
+    yield pytest.param(README.read_text(encoding="utf-8"), id="README")
     for path in [PACKAGE / "__init__.py", PACKAGE / "__init__.pyi"]:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             text = ast.get_docstring(node) if isinstance(node, DOCUMENTED) else None
