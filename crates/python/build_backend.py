@@ -1,4 +1,4 @@
-"""Builds the wheel with maturin and adds the command `isochore` to it."""
+"""Builds with maturin and adds the command `isochore` to the wheel."""
 
 import json
 import pathlib
@@ -8,7 +8,6 @@ import sys
 
 import maturin
 from maturin import (  # noqa: F401  other hooks of a build backend
-    build_sdist,
     get_requires_for_build_sdist,
     get_requires_for_build_wheel,
 )
@@ -17,8 +16,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "target" / "python" / "isochore.data" / "scripts"
 
 
+def build_sdist(sdist_directory, config_settings=None):
+    # maturin requires the folder even if it packages nothing from it.
+    SCRIPTS.mkdir(parents=True, exist_ok=True)
+    return maturin.build_sdist(sdist_directory, config_settings)
+
+
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
-    # maturin requires the folder even for metadata.
     SCRIPTS.mkdir(parents=True, exist_ok=True)
     return maturin.prepare_metadata_for_build_wheel(metadata_directory, config_settings)
 
