@@ -233,9 +233,9 @@ class DistanceField:
     >>> shape = {"kind": "icosphere", "radius": 1.0, "subdivisions": 3}
     >>> ball = isochore.run({"recipe": 1, "target": {"shape": shape}, "stroke": []}).mesh
     >>> field = isochore.DistanceField(ball, resolution=32)
-    >>> distances, gradients = field([[0, 0, 0.5], [0, 0, 1.25]])
+    >>> distances, gradients = field([[0, 0, 0.5], [0, 0, 1.4]])
     >>> [round(distance, 1) for distance in distances.tolist()], gradients.shape
-    ([-0.5, 0.2], (2, 3))
+    ([-0.5, 0.4], (2, 3))
     """
 
     def __new__(

@@ -22,7 +22,7 @@ def examples():
                 yield pytest.param(text, id=f"{path.name}-{getattr(node, 'name', 'module')}")
 
 
-@pytest.mark.parametrize("text", examples())
+@pytest.mark.parametrize("text", list(examples()))
 def test_examples_run(text):
     example = doctest.DocTestParser().get_doctest(text, {}, "example", None, None)
     output = []
