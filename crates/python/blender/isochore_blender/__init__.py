@@ -23,7 +23,7 @@ INTERVAL = 0.1
 
 
 class OBJECT_OT_isochore_deform(bpy.types.Operator):
-    """Deform the active mesh by an isochore recipe in world space. Refinement triangulates the mesh"""
+    """Deform the active mesh by a recipe in world space. Refinement triangulates the mesh"""
 
     bl_idname = "object.isochore_deform"
     bl_label = "Deform by Recipe"
@@ -39,7 +39,7 @@ class OBJECT_OT_isochore_deform(bpy.types.Operator):
 
     deformation = None
     is_interactive = False
-    """Whether to run in the background, with progress in the status bar and Esc to stop. Scripts wait for the result."""
+    """Whether to run in the background, with progress and Esc to stop. Scripts wait instead."""
 
     def invoke(self, context, event):
         self.is_interactive = True

@@ -45,7 +45,7 @@ class Deformation:
         threading.Thread(target=self.run, daemon=True).start()
 
     def run(self, show=lambda stage, done: None):
-        """Runs the deformation. `finish` returns its result. Calls `show(stage, fraction)` with the progress."""
+        """Runs the deformation, whose result `finish` returns. Calls `show(stage, fraction)`."""
 
         def follow(stage, done):
             self.progress = stage, done
@@ -61,7 +61,7 @@ class Deformation:
             self._result.set_exception(error)
 
     def stop(self):
-        """Cancels the deformation, so that `finish` raises `Cancelled`. Has no effect once it has finished."""
+        """Cancels the deformation if it has not finished. `finish` then raises `Cancelled`."""
         self._stopped.set()
 
     def is_done(self):

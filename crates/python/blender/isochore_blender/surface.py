@@ -132,7 +132,7 @@ class Surface:
         mesh.update(calc_edges=True)
 
     def _attributes(self):
-        """Returns name, type, domain and values of each attribute, and the names of unsupported ones.
+        """Returns name, type, domain and values of attributes, and the names of unsupported ones.
 
         Topology and selection are excluded. Names that begin with a dot are internal attributes
         that Blender regenerates. Custom normals are stored relative to the surface, so they are set
@@ -160,7 +160,7 @@ class Surface:
                 group.add([vertex], min(float(weights[vertex, index]), 1.0), "REPLACE")
 
     def _edges(self, triangles, source, weights, edges):
-        """Returns, for every new edge, the old edge that contains it and 1, or 0 if no old edge does."""
+        """Returns, for each new edge, the old edge that contains it and 1, or 0 if none does."""
         count = triangles.max() + 1
         ends, old_ends = np.roll(triangles, -1, axis=1), self.triangles[source][:, :: self.order]
         at, found = np.zeros((len(self.mesh.edges), 1), int), np.zeros((len(self.mesh.edges), 1))
@@ -188,7 +188,7 @@ def edge_keys(ends, count):
 
 
 def read(collection, field, width, kind):
-    """Reads the property `field` of all items of a collection, (N, width), or (N,) if width is 1."""
+    """Reads the property `field` of a collection, (N, width), or (N,) if width is 1."""
     values = np.empty(len(collection) * width, kind)
     collection.foreach_get(field, values)
     return values.reshape(-1, width) if width > 1 else values
