@@ -1,34 +1,36 @@
-//! What a mesh file says beyond geometry.
+//! Contents of a mesh file that this crate carries but does not interpret.
 
 use std::sync::Arc;
 
-/// Parts of a file that this crate does not interpret, carried from reading to writing.
+/// Contents of a mesh file beyond geometry and attributes, carried from reading to writing.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Assets {
-    /// How other programs list what the file shows.
+    /// Names of the mesh and of the scene around it.
     pub names: Names,
-    /// Material libraries that an OBJ file names.
+    /// Material libraries that an OBJ file refers to.
     pub material_libraries: Vec<String>,
     /// Materials, textures, images, samplers, skin and skeleton of a glTF file.
     pub gltf: Option<Arc<GltfAssets>>,
 }
 
-/// Names that glTF has a place for; empty where there are none.
+/// Names that glTF can store. A missing name is empty.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Names {
-    /// That of the mesh; of a file without one, or of a format without names, the name of the file without its extension.
+    /// Name of the mesh. Reading a file without one yields the file name without its extension.
     pub mesh: String,
-    /// That of the node that shows the mesh.
+    /// Name of the node that places the mesh.
     pub node: String,
-    /// That of the scene.
+    /// Name of the scene.
     pub scene: String,
 }
 
-/// The JSON of a glTF document without its meshes, and the bytes that it refers to.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// A glTF document without its meshes, and the bytes that it refers to. Opaque to this crate except
+/// when it writes glTF.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GltfAssets {
-    /// Top-level properties of the document. Buffer views refer to `bytes` as buffer 0.
-    pub json: serde_json::Map<String, serde_json::Value>,
-    /// Images, inverse bind matrices and key frames.
+    /// Top-level properties of the document, as the text of one JSON object. Buffer views refer to
+    /// `bytes` as buffer 0.
+    pub json: String,
+    /// Images, inverse bind matrices and keyframes.
     pub bytes: Vec<u8>,
 }

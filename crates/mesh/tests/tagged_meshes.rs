@@ -1,6 +1,7 @@
-//! A table of meshes, each with what is known of it, and every operation on all of them.
+//! A table of meshes with their known properties, and every operation on all of them.
 
 use glam::{DQuat, DVec3, DVec4, Vec2, Vec3};
+#[cfg(feature = "io")]
 use isochore_mesh::io::{self, Format};
 use isochore_mesh::{ClosedMesh, MeshError, SubTriangle, Subdivision, Topology, TriMesh, primitives};
 
@@ -14,12 +15,12 @@ struct Tagged {
     degenerate: &'static [u32],
     duplicate: &'static [u32],
     components: usize,
-    /// Why it is no [`ClosedMesh`].
+    /// The error of [`ClosedMesh::new`].
     defect: Option<MeshError>,
 }
 
 impl Tagged {
-    /// A mesh without any defect but those that are set afterwards.
+    /// A mesh without defects, except those that are set afterwards.
     fn sound(name: &'static str, mesh: TriMesh) -> Self {
         Self {
             name,
@@ -188,19 +189,19 @@ fn table() -> Vec<Tagged> {
     ]
 }
 
-/// Meshes that can be computed with.
+/// The valid meshes of the table.
 fn valid() -> impl Iterator<Item = Tagged> {
     table().into_iter().filter(|tagged| tagged.is_valid)
 }
 
 #[test]
-fn check_finds_what_is_known() {
+fn check_finds_the_known_defects() {
     for tagged in table() {
         let check = tagged.mesh.check();
         let found = (check.is_closed(), check.is_oriented(), check.is_manifold(), check.is_valid());
         let expected = (tagged.is_closed, tagged.is_oriented, tagged.is_manifold, tagged.is_valid);
         assert_eq!(found, expected, "{}: closed, oriented, manifold, valid", tagged.name);
-        // Products of the tiniest coordinates vanish, so that no orientation can be told.
+        // Products of the tiniest coordinates underflow, so that all triangles seem degenerate.
         if tagged.name != "tiny" {
             assert_eq!(check.degenerate_triangles, tagged.degenerate, "{}", tagged.name);
         }
@@ -232,12 +233,12 @@ fn measures_are_numbers() {
 }
 
 #[test]
-fn size_does_not_spoil_measures() {
+fn measures_scale_exactly_with_size() {
     let unit = primitives::icosphere(1.0, 2);
     for exponent in [900, -900] {
         let scale = 2.0_f64.powi(exponent);
         let mesh = unit.transformed(scale, DQuat::IDENTITY, DVec3::ZERO);
-        // Scaling by a power of two is exact, so everything scales with it bit by bit.
+        // Scaling by a power of two is exact, so all measures scale without a changed bit.
         let lengths = mesh.edge_lengths().unwrap();
         assert_eq!(lengths.mean / scale, unit.edge_lengths().unwrap().mean);
         assert_eq!(mesh.angle_range(), unit.angle_range());
@@ -247,7 +248,7 @@ fn size_does_not_spoil_measures() {
 }
 
 #[test]
-fn turning_over_negates_the_volume() {
+fn flipping_negates_the_volume() {
     for Tagged { name, mesh, .. } in valid() {
         let volume = mesh.volume();
         assert_eq!(mesh.flipped().volume(), -volume, "{name}");
@@ -257,7 +258,7 @@ fn turning_over_negates_the_volume() {
 #[test]
 fn similarity_scales_the_volume() {
     for Tagged { name, mesh, defect, .. } in valid() {
-        // The volume of any other depends on where it is measured from.
+        // The volume of other meshes depends on the center of their bounds.
         if matches!(name, "huge" | "tiny") || defect.is_some() {
             continue;
         }
@@ -265,13 +266,14 @@ fn similarity_scales_the_volume() {
         let volume = mesh.volume();
         for scale in [2.0, -2.0] {
             let moved = mesh.transformed(scale, rotation, DVec3::splat(1e3)).volume();
-            // Positions near 1e3 are rounded by 1e-13, which is that share of the volume times area over volume.
+            // Positions near 1e3 are rounded by 1e-13, which changes the volume by that times the
+            // area.
             assert!((moved - 8.0 * volume).abs() < 1e-11, "{name}: {moved}");
         }
     }
 }
 
-/// Each triangle in four, by the midpoints of its edges.
+/// Splits each triangle into four at the midpoints of its edges.
 fn in_four(mesh: &TriMesh) -> Subdivision {
     let topology = Topology::of(mesh);
     let count = mesh.positions.len() as u32;
@@ -306,18 +308,19 @@ fn subdivision_keeps_shape_and_topology() {
         let (before, after) = (mesh.check(), finer.check());
         assert_eq!(after.triangles, 4 * before.triangles);
         if name == "a vertex named twice" {
-            // An edge from a vertex to itself has no halves to speak of.
+            // An edge from a vertex to itself cannot be halved.
             continue;
         }
         assert_eq!(after.is_closed(), before.is_closed(), "{name}");
         assert_eq!(after.is_oriented(), before.is_oriented(), "{name}");
         if before.duplicate_triangles.is_empty() {
-            // Duplicates come to share edges that were inside of each.
+            // The inner edges of duplicates coincide.
             assert_eq!(finer.euler_characteristic(), mesh.euler_characteristic(), "{name}");
         }
         if before.is_closed() {
             let (before, after) = (mesh.volume(), finer.volume());
-            // Either sum is good to a few roundings of its terms, which do not cancel; overflow is the same in both.
+            // Both sums are accurate to a few roundings of their terms, which do not cancel. Both
+            // overflow alike.
             assert!(before == after || (after - before).abs() <= 1e-14 * before.abs(), "{name}");
         }
     }
@@ -346,7 +349,7 @@ fn subdivision_interpolates_attributes_once() {
     }
 }
 
-/// Corners at the new vertex of an edge get equal attributes from both sides where the ends are equal on both sides.
+/// If attributes are equal on both sides at the ends of an edge, so they are at a new vertex on it.
 #[test]
 fn subdivision_opens_no_seam() {
     let mut mesh = primitives::icosphere(1.0, 1);
@@ -365,7 +368,7 @@ fn subdivision_opens_no_seam() {
 }
 
 #[test]
-fn welding_joins_what_was_split() {
+fn welding_undoes_vertex_splits() {
     for Tagged { name, mesh, .. } in valid() {
         let corners = mesh.triangles.iter().flatten().map(|&vertex| mesh.positions[vertex as usize]).collect();
         let triangles = (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
@@ -403,11 +406,12 @@ fn turned_normals_keep_hard_edges_and_smooth_ones() {
     mesh.positions.iter_mut().for_each(|position| *position = rotation * *position);
     mesh.turn_normals(&rest);
     for (before, after) in before.iter().flatten().zip(mesh.corner.normals.iter().flatten()) {
-        // Each of three components is rounded by half an ulp, and before that as well.
+        // Each of three components is rounded twice, by half an ulp.
         assert!(after.as_dvec3().distance(rotation * before.as_dvec3()) < f64::from(f32::EPSILON));
     }
 
-    // A smooth sphere that is stretched gets the normals of its vertices, and of its halves only what moved changes.
+    // One half of a smooth sphere is stretched: it gets the new vertex normals, the other half is
+    // unchanged.
     let mut sphere = primitives::icosphere(1.0, 3);
     let radial = sphere.vertex_normals();
     sphere.corner.normals = sphere.triangles.iter().map(|t| t.map(|v| radial[v as usize].as_vec3())).collect();
@@ -419,12 +423,13 @@ fn turned_normals_keep_hard_edges_and_smooth_ones() {
     for (triangle, vertices) in sphere.triangles.iter().enumerate() {
         for (corner, &vertex) in vertices.iter().enumerate() {
             let normal = sphere.corner.normals[triangle][corner];
-            // Both the radial normal and the turned one are rounded to single precision, by half an ulp a component.
+            // The radial and the rotated normal are both rounded to single precision, by half an
+            // ulp per component.
             assert!(normal.as_dvec3().distance(expected[vertex as usize]) < 2.0 * f64::from(f32::EPSILON));
             kept += usize::from(normal == before[triangle][corner]);
         }
     }
-    // Of the lower half, all but the corners next to the equator.
+    // The lower half, except the corners next to the equator.
     assert!((1500..1920).contains(&kept), "{kept}");
 
     let mut bare = tetrahedron();
@@ -432,7 +437,7 @@ fn turned_normals_keep_hard_edges_and_smooth_ones() {
     assert!(bare.corner.normals.is_empty());
 }
 
-/// Normals that are no means of facets are turned as they are.
+/// Authored normals, which differ from the mean of the facets, are rotated with it.
 #[test]
 fn authored_normals_keep_their_character() {
     let mut mesh = tetrahedron();
@@ -449,15 +454,16 @@ fn authored_normals_keep_their_character() {
     assert!(mesh.corner.normals[3].iter().all(|normal| normal.is_normalized() && *normal != authored));
 }
 
+#[cfg(feature = "io")]
 #[test]
-fn every_format_takes_every_valid_mesh_or_says_why_not() {
+fn every_format_accepts_every_valid_mesh_or_reports_an_error() {
     for Tagged { name, mesh, .. } in table() {
         for format in [Format::Obj, Format::Gltf, Format::Glb, Format::Ply, Format::Stl, Format::Off] {
             let mut bytes = Vec::new();
             match io::write_to(format, &mesh, &mut bytes) {
                 Ok(()) => match io::read_bytes(format, &bytes) {
                     Ok(read) => assert!(read.check().is_valid(), "{name} {format:?}"),
-                    // Nothing to read, or all triangles collapsed in single precision.
+                    // No triangles, or all of them collapsed in single precision.
                     Err(error) => assert!(matches!(name, "empty" | "tiny"), "{name} {format:?}: {error}"),
                 },
                 Err(error) => {

@@ -56,7 +56,7 @@ impl PickledMesh {
             materials: mesh.materials.clone(),
             names: [name, node, scene],
             material_libraries: mesh.assets.material_libraries.clone(),
-            gltf: gltf.map(|gltf| (serde_json::Value::from(gltf.json.clone()).to_string(), gltf.bytes.clone())),
+            gltf: gltf.map(|gltf| (gltf.json.clone(), gltf.bytes.clone())),
         }
     }
 
@@ -66,7 +66,8 @@ impl PickledMesh {
     /// The data is not a valid mesh, for example because another version wrote it.
     pub(crate) fn restored(self) -> Result<TriMesh, Failure> {
         let gltf = |(json, bytes): (String, Vec<u8>)| {
-            Ok::<_, Failure>(Arc::new(GltfAssets { json: serde_json::from_str(&json).map_err(Failure::input)?, bytes }))
+            serde_json::from_str::<serde_json::Map<_, serde_json::Value>>(&json).map_err(Failure::input)?;
+            Ok::<_, Failure>(Arc::new(GltfAssets { json, bytes }))
         };
         let [name, node, scene] = self.names;
         let counts: Vec<u32> = pod_collect_to_vec(&self.skin_counts);

@@ -9,14 +9,14 @@ use serde_json::{Value, json};
 
 use crate::{reread, written};
 
-/// A tetrahedron, outside out.
+/// A tetrahedron, oriented outward.
 const POSITIONS: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const INDICES: [u16; 12] = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
-/// Stands for a picture; nobody decodes it.
+/// A placeholder for an image, which is never decoded.
 const PICTURE: &[u8] = b"\x89PNG\r\n\x1a\n picture";
 
-/// A document of one tetrahedron with its buffer inside: views 0 positions, 1 indices, 2 picture, 3 weights and
-/// 4 joints, 5 matrices.
+/// A document of one tetrahedron with an embedded buffer. Views: 0 positions, 1 indices, 2 image, 3
+/// weights, 4 joints, 5 matrices.
 fn document() -> Value {
     let mut buffer = Vec::new();
     let mut views = Vec::new();
@@ -76,7 +76,7 @@ fn node_transforms_are_applied() {
 }
 
 #[test]
-fn mirroring_nodes_turn_triangles_over() {
+fn mirroring_nodes_reverse_triangles() {
     let mut document = document();
     document["nodes"] = json!([
         { "mesh": 0, "scale": [-1, 1, 1], "translation": [-5, 0, 0] },
@@ -146,7 +146,7 @@ fn picture_in(glb: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn textures_come_back_untouched() {
+fn textures_are_written_unchanged() {
     let source = textured();
     let mesh = read(&source);
     let glb = written(Format::Glb, &mesh);
@@ -158,7 +158,7 @@ fn textures_come_back_untouched() {
     assert_eq!(json["meshes"][0]["primitives"][0]["material"], 0);
     assert_eq!(reread(Format::Glb, &mesh), mesh);
     assert_eq!(reread(Format::Gltf, &mesh), mesh);
-    // Deforming keeps them too.
+    // A transformation keeps them too.
     assert_eq!(picture_in(&written(Format::Glb, &mesh.transformed(2.0, Default::default(), DVec3::ONE))), PICTURE);
 }
 
@@ -180,18 +180,19 @@ fn files_beside_the_document_are_read() {
     std::fs::write(&path, document.to_string()).unwrap();
     let message = io::read(&path).unwrap_err().to_string();
     assert!(message.contains("scene.gltf: gone.bin: "), "{message}");
-    // A picture that is missing is no reason to refuse the mesh.
+    // A missing image does not cause an error.
     document["buffers"][0]["uri"] = "the%20buffer.bin".into();
     document["images"] = json!([{ "uri": "gone.png" }]);
     std::fs::write(&path, document.to_string()).unwrap();
     let mesh = io::read(&path).unwrap();
     let carried = mesh.assets.gltf.as_ref().unwrap();
-    assert_eq!(carried.json["images"][0]["uri"], "gone.png");
+    let carried: Value = serde_json::from_str(&carried.json).unwrap();
+    assert_eq!(carried["images"][0]["uri"], "gone.png");
     assert!(Path::new(&path).exists());
 }
 
 #[test]
-fn skin_and_skeleton_come_back() {
+fn skin_and_skeleton_are_written() {
     let mut source = document();
     source["meshes"][0]["primitives"][0]["attributes"] = json!({ "POSITION": 0, "WEIGHTS_0": 2, "JOINTS_0": 3 });
     source["skins"] = json!([{ "joints": [1, 2], "inverseBindMatrices": 4, "skeleton": 1 }]);
@@ -209,7 +210,7 @@ fn skin_and_skeleton_come_back() {
         ],
     }]);
     let mesh = read(&source);
-    // A skinned mesh is placed by its joints alone.
+    // Only its joints place a skinned mesh.
     assert_eq!(mesh.positions[1], DVec3::X);
     assert_eq!(mesh.vertex.skin, vec![vec![(1, 0.75), (0, 0.25)]; 4]);
     let glb = written(Format::Glb, &mesh);
@@ -290,11 +291,11 @@ fn names_are_carried() {
     let names_of = |json: &Value| ["meshes", "nodes", "scenes"].map(|part| json[part][0]["name"].clone());
     std::fs::write(&path, named.to_string()).unwrap();
     assert_eq!(names_of(&json_of(&io::read(&path).unwrap())), ["bell", "tower", "village"]);
-    // Without names of its own, the mesh and its node are called after the file.
+    // Without names in the document, the mesh and its node are named after the file.
     std::fs::write(&path, document().to_string()).unwrap();
     assert_eq!(names_of(&json_of(&io::read(&path).unwrap())), [json!("file"), json!("file"), Value::Null]);
     assert_eq!(names_of(&json_of(&read(&document()))), [Value::Null, Value::Null, Value::Null]);
-    // Of two instances neither is what is written.
+    // A mesh merged from two instances has the name of neither.
     named["nodes"] = json!([{ "mesh": 0, "name": "tower" }, { "mesh": 0, "name": "gate", "translation": [5, 0, 0] }]);
     named["scenes"][0]["nodes"] = json!([0, 1]);
     assert_eq!(names_of(&json_of(&read(&named))), [Value::Null, Value::Null, json!("village")]);

@@ -1,6 +1,6 @@
-//! Numbers out of buffers.
+//! Reading numbers from buffers.
 //!
-//! The library's own iterators take offsets and counts on trust and panic where those are wrong.
+//! The iterators of the `gltf` library trust offsets and counts, and panic if those are wrong.
 
 use ::gltf::json::Accessor;
 use ::gltf::json::accessor::ComponentType;
@@ -10,14 +10,21 @@ use super::document::{Document, malformed};
 use crate::huge_pages::in_huge_pages;
 use crate::io::ParseError;
 
-/// Most elements of an accessor that has no bytes behind it. Larger, and a file of a few bytes could ask for all
-/// memory; smaller, and sparse accessors of large meshes are refused.
+/// Largest number of elements of an accessor without a buffer view. With a larger value a file of a
+/// few bytes could demand all memory; a smaller one refuses sparse accessors of large meshes.
 const MAX_IMPLICIT_COUNT: usize = 1 << 26;
 
-/// Bytes of the largest element there is, a matrix of four rows and columns.
+/// Bytes of the largest element, a 4×4 matrix.
 const MAX_ELEMENT_SIZE: usize = 64;
 
-/// Where an accessor's elements lie.
+/// Elements in a buffer view, as announced by the document.
+struct Announced {
+    view: usize,
+    offset: u64,
+    count: u64,
+}
+
+/// The bytes of an accessor's elements.
 struct Layout<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -33,7 +40,8 @@ impl Document<'_> {
         }
     }
 
-    /// What `make` makes of elements of `N` components each, normalized integers turned to fractions.
+    /// The results of `make` for elements of `N` components each. Normalized integers become
+    /// fractions.
     pub(super) fn vectors<T: Clone, const N: usize>(
         &self,
         index: usize,
@@ -42,14 +50,14 @@ impl Document<'_> {
         let is_normalized = self.accessor(index)?.normalized;
         let component = self.component(index)?.0;
         self.expect_components(index, N)?;
-        // Nearly all accessors are such ones, and need not ask of every number what it is.
+        // The common case: packed floats need no check of the component type for every number.
         if component == ComponentType::F32
             && let Some(bytes) = self.packed(index, 4 * N)?
         {
             let vectors = bytes.as_chunks().0.as_chunks::<N>().0;
-            let mut made = in_huge_pages(Vec::with_capacity(vectors.len()));
-            made.extend(vectors.iter().map(|vector| make(vector.map(single))));
-            return Ok(made);
+            let mut results = in_huge_pages(Vec::with_capacity(vectors.len()));
+            results.extend(vectors.iter().map(|vector| make(vector.map(single))));
+            return Ok(results);
         }
         self.elements(index, N, |bytes| {
             let size = component.size();
@@ -57,7 +65,7 @@ impl Document<'_> {
         })
     }
 
-    /// Whole numbers, `N` at a time; those left over are left out.
+    /// Unsigned integers in groups of `N`. An incomplete last group is dropped.
     pub(super) fn indices<const N: usize>(&self, index: usize) -> Result<Vec<[u32; N]>, ParseError> {
         let component = match self.component(index)? {
             (component @ (ComponentType::U8 | ComponentType::U16 | ComponentType::U32), _) => component,
@@ -76,7 +84,8 @@ impl Document<'_> {
         Ok(numbers.as_chunks().0.to_vec())
     }
 
-    /// Bytes of all elements, where each of this size follows the one before and none is replaced by a sparse one.
+    /// The bytes of all elements of this size, or `None` if they are not contiguous or the accessor
+    /// is sparse.
     fn packed(&self, index: usize, size: usize) -> Result<Option<&[u8]>, ParseError> {
         let accessor = self.accessor(index)?;
         let (Some(view), None) = (accessor.buffer_view, &accessor.sparse) else { return Ok(None) };
@@ -84,7 +93,8 @@ impl Document<'_> {
         Ok((layout.stride == size).then(|| &layout.bytes[..size * layout.count]))
     }
 
-    /// What `make` makes of the bytes of each element, of the given number of components; zeros where the file has none.
+    /// The results of `make` for the bytes of each element of `components` components. An accessor
+    /// without a buffer view consists of zeros.
     fn elements<T: Clone>(
         &self,
         index: usize,
@@ -112,10 +122,11 @@ impl Document<'_> {
                 return Err(malformed(format!("accessor {index} has sparse indices of an unknown type")));
             };
             let index_size = kind.0.size();
-            let indices = (sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0);
-            let indices = self.layout(index, indices.0, indices.1, sparse.count.0, index_size)?;
-            let values = (sparse.values.buffer_view.value(), sparse.values.byte_offset.0);
-            let values = self.layout(index, values.0, values.1, sparse.count.0, size)?;
+            let count = sparse.count.0;
+            let (view, offset) = (sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0);
+            let indices = self.layout(index, Announced { view, offset, count }, index_size)?;
+            let (view, offset) = (sparse.values.buffer_view.value(), sparse.values.byte_offset.0);
+            let values = self.layout(index, Announced { view, offset, count }, size)?;
             for i in 0..indices.count {
                 let target = number(kind.0, false, &indices.bytes[i * indices.stride..]) as usize;
                 let slot = elements.get_mut(target);
@@ -127,13 +138,14 @@ impl Document<'_> {
     }
 
     fn expect_components(&self, index: usize, components: usize) -> Result<(), ParseError> {
-        match self.components(index)? == components {
-            true => Ok(()),
-            false => Err(malformed(format!("accessor {index} should have {components} components"))),
+        if self.components(index)? == components {
+            Ok(())
+        } else {
+            Err(malformed(format!("accessor {index} should have {components} components")))
         }
     }
 
-    /// Where the elements of an accessor lie that has a buffer view.
+    /// The bytes of the elements of an accessor with a buffer view.
     fn accessor_layout(
         &self,
         index: usize,
@@ -142,7 +154,7 @@ impl Document<'_> {
         size: usize,
     ) -> Result<Layout<'_>, ParseError> {
         let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-        self.layout(index, view, offset, accessor.count.0, size)
+        self.layout(index, Announced { view, offset, count: accessor.count.0 }, size)
     }
 
     fn accessor(&self, index: usize) -> Result<&Accessor, ParseError> {
@@ -156,15 +168,9 @@ impl Document<'_> {
         }
     }
 
-    /// Makes sure that all elements lie in their buffer view.
-    fn layout(
-        &self,
-        accessor: usize,
-        view: usize,
-        offset: u64,
-        count: u64,
-        size: usize,
-    ) -> Result<Layout<'_>, ParseError> {
+    /// Checks that all elements are inside their buffer view.
+    fn layout(&self, accessor: usize, announced: Announced, size: usize) -> Result<Layout<'_>, ParseError> {
+        let Announced { view, offset, count } = announced;
         let (bytes, stride) = self.view(view)?;
         let stride = stride.unwrap_or(size);
         let beyond = || malformed(format!("accessor {accessor} reaches beyond buffer view {view}"));
@@ -173,7 +179,7 @@ impl Document<'_> {
         let Some(last) = count.checked_sub(1) else {
             return Ok(Layout { bytes: &[], stride, count });
         };
-        // A stride of zero would let a few bytes stand for any number of elements.
+        // With a stride of zero, a few bytes could serve as any number of elements.
         let end = last.checked_mul(stride).and_then(|start| start.checked_add(size));
         match end {
             Some(end) if end <= bytes.len() && stride >= size => Ok(Layout { bytes, stride, count }),
@@ -186,7 +192,7 @@ fn single(bytes: [u8; 4]) -> f64 {
     f64::from(f32::from_le_bytes(bytes))
 }
 
-fn whole(bytes: &[u8]) -> u32 {
+fn unsigned(bytes: &[u8]) -> u32 {
     u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
 }
 
@@ -196,7 +202,7 @@ fn number(component: ComponentType, is_normalized: bool, bytes: &[u8]) -> f64 {
         ComponentType::U8 => (f64::from(bytes[0]), f64::from(u8::MAX)),
         ComponentType::I16 => (f64::from(i16::from_le_bytes([bytes[0], bytes[1]])), f64::from(i16::MAX)),
         ComponentType::U16 => (f64::from(u16::from_le_bytes([bytes[0], bytes[1]])), f64::from(u16::MAX)),
-        ComponentType::U32 => (f64::from(whole(bytes)), f64::from(u32::MAX)),
+        ComponentType::U32 => (f64::from(unsigned(bytes)), f64::from(u32::MAX)),
         ComponentType::F32 => return single([bytes[0], bytes[1], bytes[2], bytes[3]]),
     };
     if is_normalized { (value / full).max(-1.0) } else { value }

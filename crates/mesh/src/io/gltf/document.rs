@@ -12,29 +12,32 @@ use serde_json::Value;
 
 use crate::io::{ParseError, Resolve};
 
-/// A document with its buffers at hand.
+/// A document with its loaded buffers.
 pub(super) struct Document<'a> {
-    /// All that the JSON says.
+    /// The complete JSON.
     pub(super) json: Value,
-    /// What it says about geometry, in types.
+    /// The geometry part of the JSON, typed.
     pub(super) root: Root,
     buffers: Vec<Cow<'a, [u8]>>,
 }
 
-/// Extensions that store geometry in other ways than accessors do.
+/// Extensions that store geometry in compressed form instead of accessors.
 const COMPRESSIONS: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// Properties of the root that geometry does not depend on, and that stay out of its types' sight: unknown extensions
-/// in them are no reason to refuse a mesh.
+/// Top-level properties that geometry does not depend on. They are removed before the typed parse,
+/// so that unknown extensions in them do not cause the mesh to be refused.
 const OPAQUE: [&str; 8] =
     ["animations", "cameras", "extensions", "extras", "images", "materials", "samplers", "textures"];
 
 impl<'a> Document<'a> {
     pub(super) fn open(bytes: &'a [u8], resolve: Resolve<'_>) -> Result<Self, ParseError> {
         let (text, binary) = split(bytes)?;
-        let json: Value = serde_json::from_slice(&text).map_err(|error| match error.is_eof() {
-            true => malformed("the JSON is truncated"),
-            false => malformed(format!("the JSON is broken: {error}")),
+        let json: Value = serde_json::from_slice(&text).map_err(|error| {
+            if error.is_eof() {
+                malformed("the JSON is truncated")
+            } else {
+                malformed(format!("the JSON is broken: {error}"))
+            }
         })?;
         let required = json.get("extensionsRequired").and_then(Value::as_array);
         for extension in required.into_iter().flatten().filter_map(Value::as_str) {
@@ -66,7 +69,7 @@ impl<'a> Document<'a> {
         Ok(Self { json, root, buffers })
     }
 
-    /// Bytes of a buffer view, and its stride where it has one.
+    /// Bytes of a buffer view, and its stride if it has one.
     pub(super) fn view(&self, index: usize) -> Result<(&[u8], Option<usize>), ParseError> {
         let missing = || malformed(format!("buffer view {index} does not exist"));
         let view: &buffer::View = self.root.buffer_views.get(index).ok_or_else(missing)?;
@@ -82,7 +85,7 @@ fn usize_range(start: u64, end: u64) -> Option<std::ops::Range<usize>> {
     Some(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
 }
 
-/// The JSON and, of a binary file, the buffer after it.
+/// The JSON, and the buffer after it in a binary file.
 type Parts<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
 
 fn split(bytes: &[u8]) -> Result<Parts<'_>, ParseError> {
@@ -103,7 +106,7 @@ fn split(bytes: &[u8]) -> Result<Parts<'_>, ParseError> {
     Ok((glb.json, glb.bin))
 }
 
-/// Bytes that a URI stands for: base64 in itself, or a file beside the document.
+/// The bytes that a URI refers to: embedded base64, or a file relative to the document.
 pub(super) fn load(uri: &str, resolve: Resolve<'_>) -> Result<Vec<u8>, ParseError> {
     let failed = |problem: String| ParseError::Reference { uri: uri.chars().take(80).collect(), problem };
     if let Some(data) = uri.strip_prefix("data:") {

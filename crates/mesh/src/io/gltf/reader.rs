@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use ::gltf::json::mesh::{Mode, Primitive, Semantic};
+use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
 use glam::{DMat3, DVec2, DVec3, DVec4, Vec2, Vec3};
 use serde_json::Value;
 
+use super::attributes::{Attributes, Column};
 use super::document::{Document, malformed};
 use super::scene::Instance;
 use crate::io::by_corner::by_corner;
@@ -14,8 +15,8 @@ use crate::io::{ParseError, Resolve};
 use crate::measure::triangle_normal;
 use crate::{CornerAttributes, TriMesh, VertexAttributes};
 
-/// Reads the scene of a document as one mesh; equal positions become one vertex. Also says whether what the corners carry
-/// is known to be finite.
+/// Reads the scene of a document as one mesh; equal positions become one vertex. The flag is `true`
+/// if all corner attributes are known to be finite.
 pub(in crate::io) fn parse(bytes: &[u8], resolve: Resolve<'_>) -> Result<(TriMesh, bool), ParseError> {
     let document = Document::open(bytes, resolve)?;
     let instances = document.instances()?;
@@ -24,7 +25,8 @@ pub(in crate::io) fn parse(bytes: &[u8], resolve: Resolve<'_>) -> Result<(TriMes
     for instance in &instances {
         soup.add_instance(&document, instance, skin.is_some())?;
     }
-    // Corners are six times as many as vertices; not those of normals that triangles have to lend.
+    // Check the vertices, which are fewer than the corners. Normals computed from triangles must be
+    // checked at the corners.
     let has_finite_corners = soup.has_finite_attributes() && !soup.lacks_normals();
     let mut mesh = soup.into_mesh(&document.json).welded();
     mesh.assets.names = document.names(&instances);
@@ -32,78 +34,23 @@ pub(in crate::io) fn parse(bytes: &[u8], resolve: Resolve<'_>) -> Result<(TriMes
     Ok((mesh, has_finite_corners))
 }
 
-/// The skin of all instances, if they have the same one.
+/// The skin that all instances have in common, if any.
 fn common_skin(instances: &[Instance]) -> Option<usize> {
     let first = instances.first()?.skin;
     if instances.iter().all(|instance| instance.skin == first) { first } else { None }
 }
 
-/// Vertices with all their attributes, split at seams as the file has them.
+/// Vertices with all their attributes, split at seams as in the file.
 #[derive(Default)]
 struct Soup {
     positions: Vec<DVec3>,
-    /// Zero where the file gives none.
+    /// Zero for vertices without a normal in the file.
     normals: Column<Vec3>,
     uvs: Vec<Column<Vec2>>,
     colors: Column<DVec4>,
     influences: Column<Vec<(u32, f64)>>,
     triangles: Vec<[u32; 3]>,
     materials: Column<Option<u32>>,
-}
-
-/// Values of an attribute, none until an element has one.
-#[derive(Default)]
-struct Column<T>(Vec<T>);
-
-impl<T: Clone> Column<T> {
-    /// Adds the values of the elements from `start` on; those before that had none get `missing`.
-    fn add(&mut self, start: usize, values: Vec<T>, missing: T) {
-        if start == 0 {
-            self.0 = values;
-        } else {
-            self.0.resize(start, missing);
-            self.0.extend(values);
-        }
-    }
-
-    /// One value for each of `count` elements, or none at all.
-    fn complete(mut self, count: usize, missing: T) -> Vec<T> {
-        if !self.0.is_empty() {
-            self.0.resize(count, missing);
-        }
-        self.0
-    }
-}
-
-/// A primitive's attributes by meaning, as numbers of accessors.
-#[derive(Default, PartialEq)]
-struct Attributes {
-    positions: Option<usize>,
-    normals: Option<usize>,
-    colors: Option<usize>,
-    uvs: Vec<usize>,
-    joints: Vec<usize>,
-    weights: Vec<usize>,
-}
-
-impl Attributes {
-    fn of(primitive: &Primitive) -> Self {
-        let mut attributes = Self::default();
-        // Semantics come in ascending order, so sets are pushed in theirs.
-        for (semantic, accessor) in &primitive.attributes {
-            let accessor = accessor.value();
-            match semantic {
-                Checked::Valid(Semantic::Positions) => attributes.positions = Some(accessor),
-                Checked::Valid(Semantic::Normals) => attributes.normals = Some(accessor),
-                Checked::Valid(Semantic::Colors(0)) => attributes.colors = Some(accessor),
-                Checked::Valid(Semantic::TexCoords(_)) => attributes.uvs.push(accessor),
-                Checked::Valid(Semantic::Joints(_)) => attributes.joints.push(accessor),
-                Checked::Valid(Semantic::Weights(_)) => attributes.weights.push(accessor),
-                _ => {}
-            }
-        }
-        attributes
-    }
 }
 
 impl Soup {
@@ -152,16 +99,20 @@ impl Soup {
         let accessor = accessor.ok_or_else(|| malformed(format!("mesh {number} has a primitive without positions")))?;
         let to_world = instance.world_from_mesh;
         let is_in_place = to_world == glam::DMat4::IDENTITY;
-        let positions: Vec<DVec3> = match is_in_place {
-            // A transformation leaves no negative zero either.
-            true => document.vectors(accessor, |[x, y, z]| DVec3::new(x + 0.0, y + 0.0, z + 0.0))?,
-            false => document.vectors(accessor, |position| to_world.transform_point3(position.into()))?,
+        let positions: Vec<DVec3> = if is_in_place {
+            // Adding zero removes negative zeros, as the transformation in the other branch does.
+            document.vectors(accessor, |[x, y, z]| DVec3::new(x + 0.0, y + 0.0, z + 0.0))?
+        } else {
+            document.vectors(accessor, |position| to_world.transform_point3(position.into()))?
         };
         let base = self.positions.len();
         let count = positions.len();
-        let expect = |found: usize| match found == count {
-            true => Ok(()),
-            false => Err(malformed(format!("mesh {number} has {count} positions but {found} values of an attribute"))),
+        let expect = |found: usize| {
+            if found == count {
+                Ok(())
+            } else {
+                Err(malformed(format!("mesh {number} has {count} positions but {found} values of an attribute")))
+            }
         };
         if base + count > u32::MAX as usize {
             return Err(malformed("the scene has more vertices than 32-bit indices can name"));
@@ -171,7 +122,8 @@ impl Soup {
             _ => self.positions.extend(positions),
         }
         if let Some(accessor) = attributes.normals {
-            // Normals are covectors: they follow the inverse transpose, here up to a positive factor.
+            // Normals are covectors: they follow the inverse transpose, here up to a positive
+            // factor.
             let linear = DMat3::from_mat4(to_world);
             let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
             let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * linear.determinant().signum();
@@ -231,9 +183,9 @@ impl Soup {
             let number = instance.mesh;
             return Err(malformed(format!("mesh {number} names vertex {index}, but the primitive has {vertices}")));
         }
-        // Strips are joined by triangles that name a vertex twice.
+        // Strips are joined by degenerate triangles that use a vertex twice.
         triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
-        // A mirroring node turns the triangles over.
+        // A mirroring node reverses the orientation.
         if instance.world_from_mesh.determinant() < 0.0 {
             triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         }
@@ -258,7 +210,7 @@ impl Soup {
             && self.colors.0.iter().all(|color| color.is_finite())
     }
 
-    /// True where some vertices have a normal and others do not.
+    /// Whether some vertices have a normal and others do not.
     fn lacks_normals(&self) -> bool {
         let Column(normals) = &self.normals;
         !normals.is_empty() && (normals.len() < self.positions.len() || normals.contains(&Vec3::ZERO))
@@ -269,9 +221,10 @@ impl Soup {
         let Self { positions, triangles, .. } = self;
         let count = positions.len();
         let normals = self.normals.complete(count, Vec3::ZERO);
-        let corner_normals = match lacks_normals {
-            true => triangles.iter().map(|triangle| corner_normals(triangle, &positions, &normals)).collect(),
-            false => by_corner(&triangles, &normals),
+        let corner_normals = if lacks_normals {
+            triangles.iter().map(|triangle| corner_normals(triangle, &positions, &normals)).collect()
+        } else {
+            by_corner(&triangles, &normals)
         };
         let sets = self.uvs.into_iter();
         let uvs = sets.map(|set| by_corner(&triangles, &set.complete(count, Vec2::ZERO))).collect();
@@ -293,8 +246,8 @@ impl Soup {
     }
 }
 
-/// Normals of the corners; that of the triangle, where vertices have none: without normals a mesh is shaded flat, says the
-/// format.
+/// Normals of the corners. A vertex without a normal gets that of the triangle, because the format
+/// demands flat shading for meshes without normals.
 fn corner_normals(triangle: &[u32; 3], positions: &[DVec3], normals: &[Vec3]) -> [Vec3; 3] {
     let flat = || triangle_normal(triangle.map(|vertex| positions[vertex as usize])).as_vec3();
     triangle.map(|vertex| match normals[vertex as usize] {
@@ -303,7 +256,7 @@ fn corner_normals(triangle: &[u32; 3], positions: &[DVec3], normals: &[Vec3]) ->
     })
 }
 
-/// The triangles of a primitive that has this many vertices, numbered from its first one.
+/// The triangles of a primitive with `vertices` vertices, indexed from its first vertex.
 fn triangles(
     document: &Document<'_>,
     primitive: &Primitive,
@@ -326,7 +279,8 @@ fn triangles(
     })
 }
 
-/// Names of the document's materials, with the unnamed one after them where some triangles have none.
+/// The names of the document's materials and the material of each triangle. If some triangles have
+/// none, an unnamed material is appended for them.
 fn name_materials(json: &Value, materials: &[Option<u32>]) -> (Vec<String>, Vec<u32>) {
     let listed = json.get("materials").and_then(Value::as_array).map_or([].as_slice(), Vec::as_slice);
     let known = |material: &Option<u32>| material.filter(|&material| (material as usize) < listed.len());

@@ -1,4 +1,4 @@
-//! Which meshes a document shows, and where.
+//! The meshes that a document shows, and their transforms.
 
 use ::gltf::json::scene::Node;
 use glam::{DMat4, DQuat, DVec3};
@@ -7,23 +7,23 @@ use super::document::{Document, malformed};
 use crate::Names;
 use crate::io::ParseError;
 
-/// A use of a mesh.
+/// A mesh placed in the scene.
 pub(super) struct Instance {
     pub(super) mesh: usize,
     pub(super) node: Option<usize>,
     pub(super) skin: Option<usize>,
-    /// Identity for a skinned mesh, which its joints alone place.
+    /// Identity for a skinned mesh, which only its joints place.
     pub(super) world_from_mesh: DMat4,
 }
 
 impl Document<'_> {
-    /// The meshes of the default scene in the order of its nodes, or of all nodes where there is no scene, or all meshes
-    /// where there are no nodes either.
+    /// The meshes of the default scene in the order of its nodes. Without a scene, the meshes of
+    /// all nodes; without nodes, all meshes.
     pub(super) fn instances(&self) -> Result<Vec<Instance>, ParseError> {
         let nodes = &self.root.nodes;
         if nodes.is_empty() {
-            let place = |mesh| Instance { mesh, node: None, skin: None, world_from_mesh: DMat4::IDENTITY };
-            return Ok((0..self.root.meshes.len()).map(place).collect());
+            let unplaced = |mesh| Instance { mesh, node: None, skin: None, world_from_mesh: DMat4::IDENTITY };
+            return Ok((0..self.root.meshes.len()).map(unplaced).collect());
         }
         let mut instances = Vec::new();
         let mut is_visited = vec![false; nodes.len()];
@@ -46,7 +46,8 @@ impl Document<'_> {
         Ok(instances)
     }
 
-    /// The names of what is shown, where it is one: a mesh made of several has the name of none.
+    /// The names of a single instance and of its scene. A mesh merged from several instances has no
+    /// name.
     pub(super) fn names(&self, instances: &[Instance]) -> Names {
         let scene = self.root.scenes.get(self.root.scene.map_or(0, |scene| scene.value()));
         let (mesh, node) = match instances {
@@ -88,7 +89,7 @@ fn local_transform(node: &Node) -> DMat4 {
     let vector = |values: [f32; 3]| DVec3::from_array(values.map(f64::from));
     let rotation = node.rotation.map_or(DQuat::IDENTITY, |quaternion| {
         let quaternion = DQuat::from_array(quaternion.0.map(f64::from));
-        // Single precision leaves a length a little off one, which would scale the mesh.
+        // In single precision the length differs slightly from one, which would scale the mesh.
         if quaternion.length_squared() > 0.0 { quaternion.normalize() } else { DQuat::IDENTITY }
     });
     let scale = node.scale.map_or(DVec3::ONE, vector);
