@@ -1,24 +1,34 @@
-//! What may be wrong with a mesh, by element.
+//! Defects of a mesh, by element.
 
 use glam::DVec3;
+use petgraph::unionfind::UnionFind;
 use robust::{Coord, orient2d};
 
 use crate::{Topology, TriMesh};
 
-/// Everything found wrong with a mesh, each list in ascending order.
+/// The defects of a mesh, each list in ascending order.
 ///
-/// Triangles with an index out of range take no part in the other checks.
+/// Triangles with an index out of range are excluded from the other checks.
+///
+/// ```
+/// let mut mesh = isochore_mesh::primitives::icosphere(1.0, 0);
+/// assert!(mesh.check().is_closed() && mesh.check().is_manifold());
+/// mesh.triangles[3].swap(1, 2);
+/// let check = mesh.check();
+/// assert!(!check.is_oriented());
+/// assert_eq!(check.misoriented_edges.len(), 3);
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Check {
-    /// Triangles of the mesh, sound or not.
+    /// Number of triangles, valid or not.
     pub triangles: usize,
-    /// Triangles that name a vertex which does not exist.
+    /// Triangles with a vertex index out of range.
     pub out_of_range_triangles: Vec<u32>,
-    /// Vertices with a coordinate that is infinite or not a number.
+    /// Vertices with a coordinate that is infinite or NaN.
     pub non_finite_vertices: Vec<u32>,
-    /// Triangles of exactly zero area: a vertex named twice, or corners on one line.
+    /// Triangles of exactly zero area: a repeated vertex, or collinear corners.
     pub degenerate_triangles: Vec<u32>,
-    /// Triangles over the same three vertices as an earlier one, turned either way.
+    /// Triangles with the same three vertices as an earlier one, in either orientation.
     pub duplicate_triangles: Vec<u32>,
     /// Edges with one triangle.
     pub boundary_edges: Vec<[u32; 2]>,
@@ -31,46 +41,47 @@ pub struct Check {
 }
 
 impl Check {
-    /// True where every edge has at least two triangles and there are triangles at all.
+    /// Whether the mesh has triangles and every edge has at least two of them.
     pub fn is_closed(&self) -> bool {
         self.triangles > 0 && self.out_of_range_triangles.is_empty() && self.boundary_edges.is_empty()
     }
 
-    /// True where neighbors agree on which side is outside.
+    /// Whether neighboring triangles agree on the outside.
     pub fn is_oriented(&self) -> bool {
         self.out_of_range_triangles.is_empty() && self.misoriented_edges.is_empty()
     }
 
-    /// True where no edge has more than two triangles and no vertex more than one fan.
+    /// Whether no edge has more than two triangles and no vertex more than one fan.
     pub fn is_manifold(&self) -> bool {
         self.out_of_range_triangles.is_empty()
             && self.non_manifold_edges.is_empty()
             && self.non_manifold_vertices.is_empty()
     }
 
-    /// True where indices and coordinates can be computed with.
+    /// Whether all indices are in range and all coordinates finite.
     pub fn is_valid(&self) -> bool {
         self.out_of_range_triangles.is_empty() && self.non_finite_vertices.is_empty()
     }
 }
 
 impl TriMesh {
-    /// Looks for everything that [`Check`] lists. Takes time linear in the size of the mesh.
+    /// Finds all defects that [`Check`] lists, in linear time. Degeneracy is tested exactly, except
+    /// if products of coordinates underflow.
     pub fn check(&self) -> Check {
         let vertices = self.positions.len();
         let is_in_range = |triangle: &[u32; 3]| triangle.iter().all(|&vertex| (vertex as usize) < vertices);
         let out_of_range_triangles = indices_where(&self.triangles, |triangle| !is_in_range(triangle));
-        let sound: Vec<[u32; 3]>;
-        // Numbers of the sound triangles, where they are not all.
-        let mut numbers: Vec<u32> = Vec::new();
+        let valid: Vec<[u32; 3]>;
+        // Original indices of the valid triangles; empty if all are valid.
+        let mut originals: Vec<u32> = Vec::new();
         let triangles = if out_of_range_triangles.is_empty() {
             &self.triangles
         } else {
-            numbers = indices_where(&self.triangles, is_in_range);
-            sound = numbers.iter().map(|&triangle| self.triangles[triangle as usize]).collect();
-            &sound
+            originals = indices_where(&self.triangles, is_in_range);
+            valid = originals.iter().map(|&triangle| self.triangles[triangle as usize]).collect();
+            &valid
         };
-        let number = |triangle: u32| numbers.get(triangle as usize).copied().unwrap_or(triangle);
+        let original = |triangle: u32| originals.get(triangle as usize).copied().unwrap_or(triangle);
 
         let topology = Topology::of_triangles(triangles, vertices);
         let mut check = Check {
@@ -82,7 +93,7 @@ impl TriMesh {
             ..Check::default()
         };
         for list in [&mut check.degenerate_triangles, &mut check.duplicate_triangles] {
-            list.iter_mut().for_each(|triangle| *triangle = number(*triangle));
+            list.iter_mut().for_each(|triangle| *triangle = original(*triangle));
         }
         for (edge, &ends) in topology.edges.iter().enumerate() {
             match *topology.half_edges(edge) {
@@ -96,30 +107,33 @@ impl TriMesh {
         check
     }
 
-    /// Exact, but for products that underflow.
+    /// Whether the corners are collinear: exactly, except if products of coordinates underflow.
     fn is_degenerate(&self, triangle: [u32; 3]) -> bool {
         let [a, b, c] = triangle.map(|vertex| self.positions[vertex as usize]);
-        let lies_on_line = |project: fn(DVec3) -> Coord<f64>| orient2d(project(a), project(b), project(c)) == 0.0;
+        // Three points are collinear if and only if their projections onto all coordinate planes
+        // are.
+        let is_collinear = |project: fn(DVec3) -> Coord<f64>| orient2d(project(a), project(b), project(c)) == 0.0;
         (a.is_finite() && b.is_finite() && c.is_finite())
-            && lies_on_line(|p| Coord { x: p.x, y: p.y })
-            && lies_on_line(|p| Coord { x: p.y, y: p.z })
-            && lies_on_line(|p| Coord { x: p.z, y: p.x })
+            && is_collinear(|p| Coord { x: p.x, y: p.y })
+            && is_collinear(|p| Coord { x: p.y, y: p.z })
+            && is_collinear(|p| Coord { x: p.z, y: p.x })
     }
 }
 
-/// The vertex that a half-edge starts from.
+/// The start vertex of a half-edge.
 pub(crate) fn start(triangles: &[[u32; 3]], half_edge: u32) -> u32 {
     triangles[half_edge as usize / 3][half_edge as usize % 3]
 }
 
-fn indices_where<T>(items: &[T], is_wanted: impl Fn(&T) -> bool) -> Vec<u32> {
-    (0_u32..).zip(items).filter(|(_, item)| is_wanted(item)).map(|(index, _)| index).collect()
+fn indices_where<T>(items: &[T], predicate: impl Fn(&T) -> bool) -> Vec<u32> {
+    (0_u32..).zip(items).filter(|(_, item)| predicate(item)).map(|(index, _)| index).collect()
 }
 
 fn duplicates(triangles: &[[u32; 3]], topology: &Topology) -> Vec<u32> {
     let apex = |half_edge: u32| triangles[half_edge as usize / 3][(half_edge as usize + 2) % 3];
     let mut found = Vec::new();
-    // Equal triangles share their edges, so it is enough to compare the third vertices around each edge.
+    // Equal triangles have common edges, so it suffices to compare the third vertices around each
+    // edge.
     for edge in 0..topology.edges.len() {
         match *topology.half_edges(edge) {
             [_] => {}
@@ -137,36 +151,31 @@ fn duplicates(triangles: &[[u32; 3]], topology: &Topology) -> Vec<u32> {
     found
 }
 
-/// Vertices whose corners fall into several classes when corners across a shared edge are made one.
+/// Vertices whose corners form several classes when corners across each edge are united.
 fn vertices_with_several_fans(triangles: &[[u32; 3]], topology: &Topology, vertices: usize) -> Vec<u32> {
     let corner_count = 3 * triangles.len();
-    let mut parents: Vec<u32> = (0..corner_count as u32).collect();
-    fn root(parents: &mut [u32], mut corner: u32) -> u32 {
-        while parents[corner as usize] != corner {
-            parents[corner as usize] = parents[parents[corner as usize] as usize];
-            corner = parents[corner as usize];
-        }
-        corner
-    }
+    let mut fans_of_corners = UnionFind::<u32>::new(corner_count);
     let next = |half_edge: u32| half_edge - half_edge % 3 + (half_edge + 1) % 3;
     for edge in 0..topology.edges.len() {
         let around = topology.half_edges(edge);
         for &other in &around[1..] {
             let one = around[0];
-            // The corner at each end of the edge, in either triangle; a half-edge shares its number with its first corner.
-            let pairs = match start(triangles, one) == start(triangles, other) {
-                true => [(one, other), (next(one), next(other))],
-                false => [(one, next(other)), (next(one), other)],
+            // The corners at each end of the edge in the two triangles. A half-edge has the index
+            // of the corner that it starts from.
+            let pairs = if start(triangles, one) == start(triangles, other) {
+                [(one, other), (next(one), next(other))]
+            } else {
+                [(one, next(other)), (next(one), other)]
             };
             for (a, b) in pairs {
-                let (a, b) = (root(&mut parents, a), root(&mut parents, b));
-                parents[a.max(b) as usize] = a.min(b);
+                fans_of_corners.union(a, b);
             }
         }
     }
     let mut fans = vec![0_u8; vertices];
     for corner in 0..corner_count as u32 {
-        if parents[corner as usize] == corner {
+        // Every set of corners belongs to one vertex, so it is counted once, at its representative.
+        if fans_of_corners.find_mut(corner) == corner {
             let fan_count = &mut fans[start(triangles, corner) as usize];
             *fan_count = fan_count.saturating_add(1);
         }

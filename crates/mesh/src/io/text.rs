@@ -1,10 +1,10 @@
-//! Words and numbers of the text formats, in and out.
+//! Reading and writing of the words and numbers of text formats.
 
 use std::io::{self, Write};
 
 use super::{LineProblem, ParseError};
 
-/// Words between spaces.
+/// Words separated by white space.
 #[derive(Clone)]
 pub(super) struct Words<'a> {
     pub(super) rest: &'a [u8],
@@ -23,11 +23,11 @@ impl<'a> Iterator for Words<'a> {
 }
 
 impl Words<'_> {
-    /// The next word as a finite number; none at the end of the line and before a comment.
+    /// The next word as a finite number. `None` at the end of the line and before a comment.
     #[inline]
     pub(super) fn next_number(&mut self) -> Result<Option<f64>, LineProblem> {
         self.skip_spaces();
-        // Where a number ends is found by reading it, so that no byte is looked at twice.
+        // The parser finds the end of the number, so no byte is scanned twice.
         match fast_float2::parse_partial::<f64, _>(self.rest) {
             Ok((number, length)) if number.is_finite() && self.rest.get(length).is_none_or(is_space) => {
                 self.rest = &self.rest[length..];
@@ -50,13 +50,13 @@ impl Words<'_> {
     }
 }
 
-/// A backslash joins lines in OBJ and so is a space too.
+/// White space, or the backslash that joins lines in OBJ.
 #[inline]
 pub(super) fn is_space(byte: &u8) -> bool {
     byte.is_ascii_whitespace() || *byte == b'\\'
 }
 
-/// Lines that hold more than a comment, with their numbers from one.
+/// Lines that are neither blank nor only a comment, with their numbers counted from one.
 pub(super) fn numbered_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Words<'_>)> {
     bytes.split(|&byte| byte == b'\n').zip(1..).filter_map(|(line, number)| {
         let text = line.split(|&byte| byte == b'#').next().unwrap_or_default();
@@ -64,7 +64,7 @@ pub(super) fn numbered_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Words
     })
 }
 
-/// Up to `N` finite numbers, and how many there are; words after them are passed over.
+/// Reads up to `N` finite numbers and returns them with their count. Further words are ignored.
 pub(super) fn read_numbers<const N: usize>(
     mut words: Words<'_>,
     expected: usize,
@@ -80,13 +80,13 @@ pub(super) fn read_numbers<const N: usize>(
     Ok((numbers, N))
 }
 
-/// A whole number with an optional minus sign, of ten digits at most.
+/// An integer with an optional minus sign and at most ten digits.
 pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
     let (digits, sign) = match word.strip_prefix(b"-") {
         Some(digits) => (digits, -1),
         None => (word, 1),
     };
-    // Ten digits hold every 32-bit index and cannot overflow the sum.
+    // Ten digits suffice for every 32-bit index and cannot overflow 64 bits.
     if digits.is_empty() || digits.len() > 10 {
         return None;
     }
@@ -101,20 +101,21 @@ pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
     Some(sign * value)
 }
 
-/// Bytes of a file as text to show or keep, without the space around it.
+/// Bytes of a file as trimmed text, to show or to keep.
 pub(super) fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes.trim_ascii()).into_owned()
 }
 
-/// Attaches a line to what is wrong with it.
+/// Attaches the number of the line to a defect in it.
 pub(super) fn at_line(line: usize) -> impl Fn(LineProblem) -> ParseError {
     move |problem| ParseError::Line { line, problem }
 }
 
-/// Bytes gathered before they go to the writer. Fewer, and the system takes a fifth longer for PLY; more, and they leave the cache.
+/// Bytes collected before they go to the writer. Smaller values make writing PLY a fifth slower;
+/// larger ones exceed the cache.
 pub(super) const FLUSH_AT: usize = 1 << 20;
 
-/// Hands `bytes` to the writer once there are `most` of them.
+/// Passes `bytes` to the writer and clears them once they number at least `most`.
 #[inline]
 pub(super) fn flush(bytes: &mut Vec<u8>, writer: &mut dyn Write, most: usize) -> io::Result<()> {
     if bytes.len() >= most {
@@ -124,29 +125,19 @@ pub(super) fn flush(bytes: &mut Vec<u8>, writer: &mut dyn Write, most: usize) ->
     Ok(())
 }
 
-/// Writes a whole number in decimal.
-pub(super) fn push_index(bytes: &mut Vec<u8>, mut index: u32) {
-    let mut digits = [0; 10];
-    let mut start = digits.len();
-    loop {
-        start -= 1;
-        digits[start] = b'0' + (index % 10) as u8;
-        index /= 10;
-        if index == 0 {
-            break;
-        }
-    }
-    bytes.extend_from_slice(&digits[start..]);
+/// Appends an integer in decimal.
+pub(super) fn push_index(bytes: &mut Vec<u8>, index: u32) {
+    bytes.extend_from_slice(itoa::Buffer::new().format(index).as_bytes());
 }
 
-/// A number of single or double precision.
+/// A floating-point number of either precision.
 pub(super) trait Number: ryu::Float + Into<f64> + Default {}
 
 impl Number for f32 {}
 
 impl Number for f64 {}
 
-/// Lines of words on their way to a writer.
+/// Writes lines of words through a buffer.
 pub(super) struct LineWriter<'a> {
     writer: &'a mut dyn Write,
     buffer: Vec<u8>,
@@ -161,14 +152,15 @@ impl<'a> LineWriter<'a> {
         self.buffer.extend_from_slice(text.as_bytes());
     }
 
-    /// The shortest decimal that reads back as the same number; zero for what is not finite and could not be read.
+    /// Appends the shortest decimal that reads back as the same number. Writes zero instead of a
+    /// number that is not finite, which no reader would accept.
     pub(super) fn push_number<T: Number>(&mut self, number: T) {
         let mut digits = ryu::Buffer::new();
         let digits = digits.format_finite(if number.into().is_finite() { number } else { T::default() });
         self.push_text(digits.strip_suffix(".0").unwrap_or(digits));
     }
 
-    /// Each number after a space.
+    /// Appends numbers, each preceded by a space.
     pub(super) fn push_numbers(&mut self, numbers: impl IntoIterator<Item = impl Number>) {
         for number in numbers {
             self.buffer.push(b' ');
