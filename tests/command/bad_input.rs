@@ -43,7 +43,7 @@ fn rejects_invalid_meshes() {
     expect_target_rejected(target, &TETRAHEDRON.replace("v 0 1 0", "v 0 nan 0"), &[target, "line 3", "nan"]);
     expect_target_rejected(target, "", &[target, "no triangles"]);
     expect_target_rejected(target, "v 0 0 0\nv 1 0 0\nv 0 1 0\n", &[target, "no triangles"]);
-    expect_target_rejected("target.xyz", "", &["target.xyz", "known are .obj"]);
+    expect_target_rejected("target.xyz", "", &["target.xyz", "supported are .obj"]);
     expect_target_rejected("target.glb", "glTF", &["target.glb"]);
 }
 
@@ -74,7 +74,7 @@ fn rejects_invalid_recipes() {
     let twist = "kind = \"twist\"\norigin = [0, 0, 0]\naxis = [0, 0, 0]\ndegrees_per_unit = 1\n";
     expect_rejected("[output]", &format!("[[stroke]]\n{twist}[output]"), &[], &["stroke.1.axis", "zero"]);
     expect_rejected("recipe = 1", "recipe = ", &[], &["press.toml: line 1: "]);
-    expect_rejected("out.ply", "out.doc", &[], &["out.doc", "known are .obj"]);
+    expect_rejected("out.ply", "out.doc", &[], &["out.doc", "supported are .obj"]);
     expect_rejected("mesh = \"out.ply\"", "", &[], &["press.toml", "output.mesh", "--output"]);
     expect_rejected(
         "subdivisions = 3",

@@ -1,7 +1,8 @@
 //! Mesh files: OBJ, glTF, GLB, PLY, STL and OFF.
 //!
-//! [`read`] and [`write`] choose the format by the file's extension; [`read_bytes`] and [`write_to`] need no files.
-//! What a format can hold decides what survives: see [`Format`]. [`PointStream`] is for points that do not fit into memory.
+//! [`read`] and [`write`] choose the format by the file extension. [`read_bytes`] and [`write_to`]
+//! work without files. [`Format`] lists which attributes each format can store. [`PointStream`]
+//! processes point files that do not fit into memory.
 //!
 //! ```
 //! use isochore_mesh::io::{self, Format};
@@ -42,13 +43,26 @@ pub use write_error::WriteError;
 use crate::huge_pages::in_huge_pages;
 use crate::{CornerAttributes, TriMesh};
 
-/// Reads the mesh file at `path`, and the files beside it that it refers to.
+/// Reads the mesh file at `path`, and the files that it refers to, relative to its folder.
 ///
-/// Polygons are triangulated. Vertices that the format splits at seams are welded. Indices are in range and positions
-/// finite in what comes back; everything else is for [`TriMesh::check`]. A mesh without a name gets that of its file.
+/// Polygons are triangulated. Vertices that the format splits at seams are welded. The result has
+/// only valid indices and finite positions; use [`TriMesh::check`] to find other defects. A mesh
+/// without a name is named after its file.
 ///
 /// # Errors
-/// [`ReadError`], naming the file and what in it is at fault.
+/// [`ReadError`], which names the file and the faulty element in it.
+///
+/// ```
+/// use isochore_mesh::{io, primitives};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("ball.ply");
+/// io::write(&path, &primitives::icosphere(1.0, 2))?;
+/// let ball = io::read(&path)?;
+/// assert_eq!(ball.triangles.len(), 320);
+/// assert_eq!(ball.assets.names.mesh, "ball");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn read(path: impl AsRef<Path>) -> Result<TriMesh, ReadError> {
     let path = path.as_ref();
     let format = Format::of_path(path).ok_or_else(|| ReadError::UnknownFormat { path: path.to_owned() })?;
@@ -77,12 +91,22 @@ fn read_file(path: &Path) -> std::io::Result<Vec<u8>> {
 /// Reads a mesh from memory, as [`read`] does from a file. References to other files are errors.
 ///
 /// # Errors
-/// [`ParseError`], naming the line or element at fault.
+/// [`ParseError`], which names the faulty line or element.
+///
+/// ```
+/// use isochore_mesh::io::{self, Format};
+///
+/// let mesh = io::read_bytes(Format::Off, b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")?;
+/// assert_eq!(mesh.area(), 0.5);
+/// let error = io::read_bytes(Format::Off, b"OFF\n1 1 0\n0 0 0\n3 0 1 2\n").unwrap_err();
+/// assert_eq!(error.to_string(), "line 4: vertex 1 is out of range: there are 1");
+/// # Ok::<(), isochore_mesh::io::ParseError>(())
+/// ```
 pub fn read_bytes(format: Format, bytes: &[u8]) -> Result<TriMesh, ParseError> {
     parse(format, bytes, &|_| Err(std::io::ErrorKind::NotFound.into()))
 }
 
-/// Gives the bytes of a file that another one refers to, by its path relative to that one.
+/// Returns the bytes of a referenced file, given its path relative to the referring file.
 type Resolve<'a> = &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>;
 
 fn parse(format: Format, bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, ParseError> {
@@ -91,7 +115,7 @@ fn parse(format: Format, bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, 
         Format::Ply => (ply::parse(bytes)?, false),
         Format::Stl => (stl::parse(bytes)?, false),
         Format::Off => (off::parse(bytes)?, false),
-        // Which of the two it is, the bytes tell.
+        // The first bytes of the file distinguish the two.
         Format::Gltf | Format::Glb => gltf::parse(bytes, resolve)?,
     };
     if mesh.triangles.is_empty() {
@@ -102,7 +126,8 @@ fn parse(format: Format, bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, 
     Ok(mesh)
 }
 
-/// What is interpolated must be finite, or one bad number would spread. Corners that are known to be so are not looked at.
+/// Refuses interpolated attributes that are not finite, since one bad number would spread.
+/// Corners that the reader has already checked are skipped.
 fn check_attributes(mesh: &TriMesh, has_finite_corners: bool) -> Result<(), ParseError> {
     if !has_finite_corners {
         check_corners(&mesh.corner)?;
@@ -137,11 +162,11 @@ fn check_corners(corner: &CornerAttributes) -> Result<(), ParseError> {
     Ok(())
 }
 
-/// Writes `mesh` to `path`, in the format of its extension, whole or not at all: into a temporary file in the same
-/// folder first, which then takes the place of what was there.
+/// Writes `mesh` to `path` in the format of its extension, completely or not at all: first to a
+/// temporary file in the same folder, which then replaces an existing file.
 ///
 /// # Errors
-/// [`WriteError`], naming the file. An existing file is untouched then.
+/// [`WriteError`], which names the file. An existing file is then unchanged.
 pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
     let path = path.as_ref();
     let format = Format::of_path(path).ok_or_else(|| WriteError::UnknownFormat { path: path.to_owned() })?;
@@ -151,10 +176,11 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    // Asked first, because the error of a missing folder would speak of the temporary file in it.
+    // Check first: the error for a missing folder would otherwise name the temporary file in it.
     std::fs::metadata(folder).map_err(failed)?;
     let file = temporary_file(folder).map_err(failed)?;
-    // A small buffer, past which go the larger pieces that most formats gather: another copy would take as long as they do.
+    // A small buffer, which the large blocks that most formats collect bypass. Copying those once
+    // more would take as long as writing them.
     let mut buffered = std::io::BufWriter::new(file.as_file());
     write_format(format, mesh, &mut buffered).map_err(failed)?;
     buffered.flush().map_err(failed)?;
@@ -170,7 +196,8 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
 /// Writes `mesh` in `format` to `writer`.
 ///
 /// # Errors
-/// [`WriteError`]; what was written before is the writer's to discard.
+/// [`WriteError`]. The writer may then have received a part of the file, which the caller must
+/// discard.
 pub fn write_to(format: Format, mesh: &TriMesh, writer: &mut dyn Write) -> Result<(), WriteError> {
     check_writable(format, mesh, Path::new(""))?;
     write_format(format, mesh, writer).map_err(|source| WriteError::Io { path: Path::new("").to_owned(), source })
@@ -187,7 +214,8 @@ fn write_format(format: Format, mesh: &TriMesh, writer: &mut dyn Write) -> std::
     }
 }
 
-/// Refuses meshes that would come back different in kind: invalid ones, and those beyond single precision.
+/// Refuses meshes that could not be read back: invalid ones, and coordinates beyond the format's
+/// range.
 fn check_writable(format: Format, mesh: &TriMesh, path: &Path) -> Result<(), WriteError> {
     mesh.check_valid().map_err(|source| WriteError::Invalid { path: path.to_owned(), source })?;
     if format.is_single_precision() {
@@ -199,14 +227,15 @@ fn check_writable(format: Format, mesh: &TriMesh, path: &Path) -> Result<(), Wri
     Ok(())
 }
 
-/// A temporary file in `folder` with the rights that any new file gets.
+/// Creates a temporary file in `folder` with the permissions of an ordinary new file.
 fn temporary_file(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".isochore-");
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // The library's own choice is a file for its owner alone; from this one the system takes what its mask forbids.
+        // The default of `tempfile` is readable by its owner only. The system applies its umask to
+        // this mode.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder)

@@ -1,8 +1,8 @@
 //! Wavefront OBJ.
 //!
-//! Read by the library `tobj`, which gets the statements that bear on the surface. What it does not keep is seen to here: the
-//! order of the vertices and those that no face uses, colors of some vertices only, materials without a library, corners
-//! without attributes, and the line of an error.
+//! The library `tobj` parses the statements that describe the surface. This module keeps what
+//! `tobj` drops: the order of the vertices, vertices that no face uses, colors on some vertices
+//! only, materials without a library, corners without attributes, and the line number of an error.
 
 mod fault;
 mod lines;

@@ -9,7 +9,8 @@ use super::text::{LineWriter, Words, at_line, numbered_lines, parse_integer, rea
 use super::{LineProblem, ParseError};
 use crate::TriMesh;
 
-/// Reads OFF and its kinds with normals, colors or texture coordinates, of which the positions are taken.
+/// Reads the positions and faces of OFF and of its variants with normals, colors or texture
+/// coordinates.
 pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let truncated = || ParseError::Malformed("the file ends too early".into());
     let mut lines = numbered_lines(bytes);

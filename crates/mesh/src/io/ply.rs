@@ -1,11 +1,13 @@
 //! Stanford PLY.
 //!
-//! Read by the library `ply-rs-bw`, some elements at a time, so that what they take beside the mesh stays small. Attributes of
-//! corners that differ at a vertex are lists of the face, so that the surface stays closed for every reader: `texcoord` and
-//! `color` as MeshLab has them, and `normal` after their model.
+//! The library `ply-rs-bw` parses the file in chunks of elements, so that little memory is needed
+//! besides the mesh. Corner attributes that differ at a vertex are lists of the face, so that the
+//! surface stays closed for every reader: `texcoord` and `color` as in MeshLab, and `normal` by
+//! analogy.
 
 mod body;
 mod face;
+mod face_list;
 mod header;
 mod plain_triangle;
 mod reader;

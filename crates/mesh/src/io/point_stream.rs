@@ -1,4 +1,4 @@
-//! Points of a file that need not fit into memory.
+//! Points of a file that need not fit into memory, processed chunk by chunk.
 
 mod error;
 mod layout;
@@ -17,13 +17,16 @@ use ply_rs_bw::ply::Encoding;
 use super::ply::read_points;
 use layout::{Kind, Layout};
 
-/// The points of a PLY or NumPy file, read and written chunk by chunk; everything else in the file is passed through as it is.
+/// The points of a PLY or NumPy file, read and written chunk by chunk. The rest of the file is
+/// copied unchanged.
 ///
-/// Of PLY, binary in both byte orders or text, the points are the vertices: their other properties, other elements, comments and
-/// the types of the numbers stay. Of NumPy (`.npy`) they are the rows of an array N×3 of single or double precision in C order.
-/// Memory is taken for one chunk.
+/// - PLY, text or binary in either byte order: the points are the vertices. Their other properties,
+///   other elements, comments and number types are kept.
+/// - NumPy (`.npy`): the points are the rows of an N×3 array of single or double precision in C
+///   order.
 ///
-/// What comes before the points, the chunks, and what comes after are to be copied in this order:
+/// Memory use is proportional to one chunk. Copy the part before the points, then the chunks, then
+/// the rest:
 ///
 /// ```
 /// # use glam::DVec3;
@@ -51,12 +54,12 @@ pub struct PointStream {
     layout: Layout,
     /// Points read so far.
     read: u64,
-    /// Where the last chunk begins, and what comes next: in bytes, of text in lines.
+    /// Start of the last chunk and of the next one: in bytes, or in lines of a text file.
     chunk_start: u64,
     position: u64,
-    /// The last chunk as it stood in the file.
+    /// The bytes of the last chunk.
     chunk: Vec<u8>,
-    /// What a chunk becomes on its way out.
+    /// The text that replaces a chunk.
     out: Vec<u8>,
 }
 
@@ -64,7 +67,8 @@ impl PointStream {
     /// Opens the file at `path` and reads its header.
     ///
     /// # Errors
-    /// [`PointStreamError`]: no such file, or its format or the types of its numbers cannot be streamed.
+    /// [`PointStreamError`] if the file cannot be read, or if its format or number types cannot be
+    /// streamed.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, PointStreamError> {
         let path = path.as_ref();
         let file = File::open(path).map_err(|source| PointStreamError::read(path, source))?;
@@ -80,10 +84,10 @@ impl PointStream {
         self.layout.count
     }
 
-    /// Copies the header and what comes between it and the points. To be called once, before all chunks.
+    /// Copies the header and everything between it and the points. Call it once, before all chunks.
     ///
     /// # Errors
-    /// [`PointStreamError`]: the file is truncated, or the system failed.
+    /// [`PointStreamError`] if the file is truncated, or if reading or writing fails.
     pub fn copy_before(&mut self, writer: &mut dyn Write) -> Result<(), PointStreamError> {
         writer.write_all(&self.layout.header).map_err(PointStreamError::Write)?;
         match self.layout.kind {
@@ -115,10 +119,12 @@ impl PointStream {
         Ok(())
     }
 
-    /// Replaces `points` by the next ones, `most` at most; false and none where there are no more.
+    /// Replaces `points` by the next points, at most `most` of them. Returns `false` at the end of
+    /// the points.
     ///
     /// # Errors
-    /// [`PointStreamError`]: the file is truncated, a coordinate is no finite number, or the system failed.
+    /// [`PointStreamError`] if the file is truncated, a coordinate is not a finite number, or
+    /// reading fails.
     pub fn read_chunk(&mut self, most: usize, points: &mut Vec<DVec3>) -> Result<bool, PointStreamError> {
         points.clear();
         let count = usize::try_from(self.count() - self.read).unwrap_or(usize::MAX).min(most.max(1));
@@ -143,23 +149,24 @@ impl PointStream {
         }
         self.layout.vertices.count = count;
         read_points(&self.layout.ply, &self.layout.vertices, &self.chunk, points).map_err(|(index, problem)| {
-            let place = match self.layout.kind {
+            let location = match self.layout.kind {
                 Kind::Binary { size, .. } => format!("at byte {}", self.chunk_start + (index * size) as u64),
                 Kind::Text { .. } => format!("on line {}", self.chunk_start + index as u64 + 1),
             };
-            PointStreamError::Point { path: self.path.clone(), point: self.read + index as u64, place, problem }
+            PointStreamError::Point { path: self.path.clone(), point: self.read + index as u64, location, problem }
         })?;
         self.read += points.len() as u64;
         Ok(!points.is_empty())
     }
 
-    /// Writes the last chunk with its points replaced by `points`, rounded to the type that the file has for them.
+    /// Writes the last chunk with its points replaced by `points`, rounded to the number type of
+    /// the file.
     ///
     /// # Errors
-    /// [`PointStreamError`]: a point is not finite in that type, or the system failed.
+    /// [`PointStreamError`] if a point is not finite in that type, or if writing fails.
     ///
     /// # Panics
-    /// If there are not as many points as in the last chunk.
+    /// If the number of points differs from that of the last chunk.
     pub fn write_chunk(&mut self, points: &[DVec3], writer: &mut dyn Write) -> Result<(), PointStreamError> {
         let is_single = self.layout.is_single_precision();
         let is_finite = |point: &DVec3| if is_single { point.as_vec3().is_finite() } else { point.is_finite() };
@@ -191,10 +198,10 @@ impl PointStream {
         writer.write_all(bytes).map_err(PointStreamError::Write)
     }
 
-    /// Copies what comes after the points, to the end of the file.
+    /// Copies everything after the points.
     ///
     /// # Errors
-    /// [`PointStreamError`]: the system failed.
+    /// [`PointStreamError`] if reading or writing fails.
     pub fn copy_after(&mut self, writer: &mut dyn Write) -> Result<(), PointStreamError> {
         loop {
             let buffered = self.input.fill_buf().map_err(|source| PointStreamError::read(&self.path, source))?;
@@ -207,7 +214,7 @@ impl PointStream {
         }
     }
 
-    /// Adds the next line to the chunk.
+    /// Appends the next line to the chunk.
     fn read_line(&mut self) -> Result<(), PointStreamError> {
         let start = self.chunk.len();
         let read = self.input.read_until(b'\n', &mut self.chunk);
@@ -216,15 +223,15 @@ impl PointStream {
     }
 
     fn truncated(&self) -> PointStreamError {
-        let place = match self.layout.kind {
+        let end = match self.layout.kind {
             Kind::Binary { .. } => format!("byte {}", self.position),
             Kind::Text { .. } => format!("line {}", self.position),
         };
-        PointStreamError::Truncated { path: self.path.clone(), announced: self.count(), place }
+        PointStreamError::Truncated { path: self.path.clone(), announced: self.count(), end }
     }
 }
 
-/// Writes `value` over the number at the beginning of `bytes`.
+/// Overwrites the number at the start of `bytes` with `value`.
 fn encode(value: f64, is_single: bool, is_big: bool, bytes: &mut [u8]) {
     let single = value as f32;
     match (is_single, is_big) {
@@ -235,7 +242,7 @@ fn encode(value: f64, is_single: bool, is_big: bool, bytes: &mut [u8]) {
     }
 }
 
-/// Reads up to and with the line that begins with `end`, or `most` bytes.
+/// Reads up to and including the line `end`, but at most `most` bytes.
 fn read_header(input: &mut impl BufRead, end: &[u8], most: usize) -> io::Result<Vec<u8>> {
     let mut header = Vec::new();
     loop {

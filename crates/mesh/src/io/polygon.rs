@@ -1,13 +1,14 @@
-//! Polygons into triangles, without flipping any.
+//! Triangulation of polygons that keeps their orientation.
 
 use earcut::Earcut;
 use glam::DVec3;
 
-/// Splits a polygon into triangles of its corner numbers, two fewer than it has corners, turned as it is.
+/// Splits a polygon of n corners into n − 2 triangles of its corner indices, with its orientation.
 ///
-/// A quadrilateral is split along the diagonal that turns no triangle over; where both do not, along the one whose worse
-/// triangle has the better shape. Larger polygons lose one ear after another, seen along their normal. Every side of the
-/// polygon becomes that of a triangle, so that no neighbor is left with a gap.
+/// A quadrilateral is split along the diagonal that flips neither triangle. If both diagonals
+/// qualify, the one whose worse triangle has the better shape is taken. Larger polygons are
+/// triangulated by ear clipping, projected along their normal. Every side of the polygon becomes
+/// the side of a triangle, so no gap opens to a neighbor.
 ///
 /// # Panics
 /// If there are fewer than three corners.
@@ -30,7 +31,8 @@ fn split_quadrilateral(corners: [DVec3; 4]) -> [[usize; 3]; 2] {
     if worse_shape(splits[1]) > worse_shape(splits[0]) { splits[1] } else { splits[0] }
 }
 
-/// Area over squared edge lengths: greatest for the equilateral triangle, negative for one turned against `normal`.
+/// Area over the sum of squared edge lengths: largest for the equilateral triangle, negative for a
+/// triangle oriented against `normal`.
 fn signed_shape([a, b, c]: [DVec3; 3], normal: DVec3) -> f64 {
     let lengths = a.distance_squared(b) + b.distance_squared(c) + c.distance_squared(a);
     if lengths > 0.0 { (b - a).cross(c - a).dot(normal) / lengths } else { 0.0 }
@@ -39,11 +41,12 @@ fn signed_shape([a, b, c]: [DVec3; 3], normal: DVec3) -> f64 {
 fn clip_ears(polygon: &[DVec3], emit: impl FnMut([usize; 3])) {
     let mut ears: Vec<usize> = Vec::new();
     Earcut::new().earcut(flatten(polygon), &[], &mut ears);
-    match ears.len() == 3 * (polygon.len() - 2) {
-        // Corners in the order of the polygon are turned as it is.
-        true => ears.as_chunks().0.iter().map(|ear| sorted(*ear)).for_each(emit),
-        // The library leaves out corners where it finds no ear, as in a polygon without area.
-        false => (2..polygon.len()).map(|corner| [0, corner - 1, corner]).for_each(emit),
+    if ears.len() == 3 * (polygon.len() - 2) {
+        // Corners in the order of the polygon have its orientation.
+        ears.as_chunks().0.iter().map(|ear| sorted(*ear)).for_each(emit);
+    } else {
+        // The library skips corners if it finds no ear, as in a polygon without area.
+        (2..polygon.len()).map(|corner| [0, corner - 1, corner]).for_each(emit);
     }
 }
 
@@ -52,7 +55,7 @@ fn sorted(mut corners: [usize; 3]) -> [usize; 3] {
     corners
 }
 
-/// The polygon seen along the axis nearest to its normal (Newell's sum).
+/// The polygon projected along the axis nearest to its normal (Newell's method).
 fn flatten(polygon: &[DVec3]) -> impl Iterator<Item = [f64; 2]> {
     let origin = polygon[0];
     let mut normal = DVec3::ZERO;

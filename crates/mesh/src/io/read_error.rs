@@ -1,14 +1,14 @@
-//! What may be wrong with a mesh file.
+//! Errors of reading mesh files.
 
 use std::path::PathBuf;
 
 use crate::MeshError;
 
-/// Why a mesh file could not be read.
+/// Errors when reading a mesh file.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// The extension is none of a known format.
-    #[error("{}: unknown mesh format; known are .obj .gltf .glb .ply .stl .off", path.display())]
+    /// The extension does not belong to a supported format.
+    #[error("{}: unknown mesh format; supported are .obj .gltf .glb .ply .stl .off", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -18,47 +18,47 @@ pub enum ReadError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
-    /// The file does not hold what its format demands.
+    /// The contents of the file are invalid.
     #[error("{}: {source}", path.display())]
     Parse {
         /// The file.
         path: PathBuf,
-        /// What is wrong in it.
+        /// The defect in it.
         source: Box<ParseError>,
     },
 }
 
-/// What is wrong with the contents of a mesh file.
+/// Defects in the contents of a mesh file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ParseError {
-    /// There is nothing to deform.
+    /// The file has no triangles.
     #[error("the file has no triangles")]
     Empty,
-    /// A line of a text format.
+    /// A line of a text format is invalid.
     #[error("line {line}: {problem}")]
     Line {
         /// The line, counted from one.
         line: usize,
-        /// What is wrong with it.
+        /// The defect in it.
         problem: LineProblem,
     },
-    /// The mesh that the file describes.
+    /// The mesh that the file describes is invalid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// An attribute that is infinite or not a number.
+    /// An attribute is infinite or NaN.
     #[error("a {attribute} of {element} {number} is not finite")]
     NonFinite {
         /// The attribute.
         attribute: &'static str,
-        /// What it belongs to: a triangle or a vertex.
+        /// The kind of element that has it: `"triangle"` or `"vertex"`.
         element: &'static str,
-        /// Its number, counted from zero.
+        /// Index of the element, counted from zero.
         number: usize,
     },
-    /// A face of a format without lines.
+    /// A face of a format without lines names a vertex that does not exist.
     #[error("face {face} names vertex {index}, but the file has {vertices} vertices")]
     IndexOutOfRange {
         /// The face, counted from zero.
@@ -68,50 +68,50 @@ pub enum ParseError {
         /// Number of vertices.
         vertices: usize,
     },
-    /// A file that this one refers to.
+    /// A referenced file cannot be read.
     #[error("{uri}: {problem}")]
     Reference {
-        /// The reference, shortened where it is long.
+        /// The reference, truncated if it is long.
         uri: String,
-        /// What went wrong with it.
+        /// The reason.
         problem: String,
     },
-    /// Anything else that the format forbids or that is not supported.
+    /// Any other violation of the format, or an unsupported feature.
     #[error("{0}")]
     Malformed(String),
 }
 
-/// What is wrong with a line of a text format.
+/// Defects in a line of a text format.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LineProblem {
-    /// A word that should be a number.
+    /// A word is not a number.
     #[error("'{0}' is not a finite number")]
     NotANumber(String),
-    /// Too few numbers.
+    /// The line has too few numbers.
     #[error("{expected} numbers expected, {found} found")]
     TooFewNumbers {
-        /// How many there should be at least.
+        /// The smallest valid number of numbers.
         expected: usize,
-        /// How many there are.
+        /// Numbers found.
         found: usize,
     },
-    /// A word that should be the corner of a face.
+    /// A word is not the corner of a face.
     #[error("'{0}' is not a face corner (v, v/vt, v//vn or v/vt/vn)")]
     NotACorner(String),
-    /// A face that is no polygon.
+    /// A face has fewer than three corners.
     #[error("a face needs at least three corners, {0} found")]
     TooFewCorners(usize),
-    /// A loop of an STL facet that has not three vertices.
+    /// The loop of an STL facet does not have three vertices.
     #[error("a facet needs exactly three vertices")]
     NotATriangle,
-    /// An index that points nowhere.
+    /// An index is out of range.
     #[error("{kind} {index} is out of range: there are {count}")]
     IndexOutOfRange {
-        /// What the index stands for.
+        /// The kind of element that it refers to.
         kind: &'static str,
-        /// The index as the file gives it.
+        /// The index as written in the file.
         index: i64,
-        /// How many there are.
+        /// Number of such elements.
         count: usize,
     },
 }

@@ -1,15 +1,28 @@
-//! Vertices split at seams, for formats whose vertices carry all attributes.
+//! Vertices split at seams, for formats that store all attributes by vertex.
 
 use crate::TriMesh;
 
-/// A vertex for every combination of corner attributes that it has.
+/// A mesh with one vertex for every combination of attributes that the corners at a vertex have.
+///
+/// ```
+/// use glam::Vec2;
+/// use isochore_mesh::{io::SplitVertices, primitives};
+///
+/// let mut mesh = primitives::icosphere(1.0, 0);
+/// assert_eq!(SplitVertices::of(&mesh).vertices.len(), 12);
+/// // Texture coordinates that differ at every corner split all vertices.
+/// let uv = |corner: usize| Vec2::new(corner as f32, 0.0);
+/// mesh.corner.uvs = vec![(0..20).map(|triangle| [0, 1, 2].map(|k| uv(3 * triangle + k))).collect()];
+/// assert_eq!(SplitVertices::of(&mesh).vertices.len(), 60);
+/// ```
 #[derive(Debug, Clone)]
 pub struct SplitVertices {
-    /// The vertex of the mesh that each split one comes from. The first ones are the mesh's own, in their order.
+    /// The original vertex of each split vertex. The first ones are the original vertices in their
+    /// order.
     pub vertices: Vec<u32>,
     /// Triangles of split vertices.
     pub triangles: Vec<[u32; 3]>,
-    /// A corner, as `3 t + k`, that uses each split vertex; none where no triangle does.
+    /// A corner `3 t + k` at each split vertex. `None` for a vertex without triangles.
     corners: Vec<Option<u32>>,
 }
 
@@ -25,7 +38,7 @@ impl SplitVertices {
             triangles: mesh.triangles.clone(),
             corners: vec![None; count],
         };
-        // Variants of a vertex form a chain; `next` leads from each to the following one.
+        // The variants of a vertex form a linked list.
         let mut next: Vec<Option<u32>> = vec![None; count];
         for corner in 0..3 * mesh.triangles.len() as u32 {
             let (triangle, side) = (corner as usize / 3, corner as usize % 3);
@@ -56,7 +69,7 @@ impl SplitVertices {
         split
     }
 
-    /// Values of a corner attribute by split vertex; `unused` for those of no triangle.
+    /// Values of a corner attribute by split vertex; `unused` for a vertex without triangles.
     pub(super) fn values<'a, T: Copy + 'a>(&'a self, corners: &'a [[T; 3]], unused: T) -> impl Iterator<Item = T> + 'a {
         self.corners.iter().map(move |corner| match corner {
             Some(corner) => corners[*corner as usize / 3][*corner as usize % 3],
@@ -65,7 +78,7 @@ impl SplitVertices {
     }
 }
 
-/// True where two corners carry the same.
+/// Whether two corners have the same attributes.
 fn agree(mesh: &TriMesh, a: u32, b: u32) -> bool {
     fn same<T: PartialEq>(corners: &[[T; 3]], a: u32, b: u32) -> bool {
         let at = |corner: u32| &corners[corner as usize / 3][corner as usize % 3];

@@ -1,7 +1,8 @@
-//! STL, both kinds.
+//! Binary and text STL.
 //!
-//! The library `stl_io` reads binary files. Text files are read here, because it rounds them to single precision, stops after
-//! the first solid, refuses solids without a name and facets whose normal is not a number, and its errors name no line.
+//! The library `stl_io` reads binary files. This module reads text files itself, because `stl_io`
+//! rounds them to single precision, stops after the first solid, refuses solids without a name and
+//! facets whose normal is not a number, and its errors do not name a line.
 
 use std::borrow::Cow;
 use std::io::{self, Cursor, Write};
@@ -15,17 +16,18 @@ use crate::huge_pages::in_huge_pages;
 use crate::measure::triangle_normal;
 use crate::position_table::PositionTable;
 
-/// Bytes before the triangles of a binary file: a free text and their number.
+/// Bytes before the triangles of a binary file: 80 bytes of free text and the number of triangles.
 const HEADER: usize = 84;
-/// Bytes of a triangle of a binary file: normal, corners and two bytes of attributes.
+/// Bytes of a triangle in a binary file: normal, corners and two bytes of attributes.
 const RECORD: usize = 50;
 
-/// Reads STL. Equal positions become one vertex; coordinates of text files keep their double precision.
+/// Reads STL. Equal positions become one vertex. Coordinates of text files are read in double
+/// precision.
 pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let count =
         bytes.get(80..HEADER).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
     let expected = count.map(|count| HEADER + RECORD * count);
-    // The size decides, because the header of a binary file may say anything; that of a text file is its first word.
+    // The size decides first, because the free text of a binary file may begin with `solid` too.
     match expected {
         Some(expected) if expected == bytes.len() => parse_binary(bytes),
         _ if bytes.trim_ascii_start().starts_with(b"solid") => parse_text(bytes),
@@ -40,7 +42,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
 
 fn parse_binary(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let mut bytes = Cow::Borrowed(bytes);
-    // The library takes every file that begins so for text.
+    // The library takes every file that begins with `solid` for text.
     if bytes.starts_with(b"solid") {
         bytes.to_mut()[0] = 0;
     }
@@ -54,7 +56,7 @@ fn parse_binary(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     mesh.map_err(|error| ParseError::Malformed(error.to_string()))
 }
 
-/// Corners of all facets of all solids. Only `vertex` and the ends of loops matter.
+/// Reads the facets of all solids. All keywords except `vertex` and `endloop` are ignored.
 fn parse_text(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let mut positions = Vec::new();
     let mut last_line = 0;
@@ -77,9 +79,9 @@ fn parse_text(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     }
 }
 
-/// Equal positions become one vertex; triangles that lose a side by it are left out.
+/// Merges equal positions into one vertex and drops triangles that thereby collapse.
 fn welded<E>(triangles: impl Iterator<Item = Result<[DVec3; 3], E>>, count: usize) -> Result<TriMesh, E> {
-    // A closed surface has half as many vertices as triangles, or little less.
+    // A closed surface has about half as many vertices as triangles.
     let mut table = PositionTable::with_capacity(count / 2);
     let mut mesh = TriMesh::new(in_huge_pages(Vec::with_capacity(count / 2)), in_huge_pages(Vec::with_capacity(count)));
     for corners in triangles {
@@ -98,7 +100,7 @@ fn welded<E>(triangles: impl Iterator<Item = Result<[DVec3; 3], E>>, count: usiz
     Ok(mesh)
 }
 
-/// Writes binary STL. The facet normals are those of the triangles as rounded.
+/// Writes binary STL. Facet normals are computed from the rounded positions.
 pub(super) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
     let mut header = [0; 80];
     header[..8].copy_from_slice(b"isochore");

@@ -1,4 +1,4 @@
-//! Mesh files read and written.
+//! Reading and writing mesh files.
 
 mod gltf;
 mod obj;
@@ -30,8 +30,9 @@ fn parse(format: Format, text: &str) -> Result<TriMesh, ParseError> {
     io::read_bytes(format, text.as_bytes())
 }
 
-/// A closed box whose faces are apart in texture space and in shading, of two materials and with vertex colors. All
-/// numbers are multiples of small powers of two, so single precision holds them.
+/// A closed box with seams between its faces in texture coordinates and normals, two materials and
+/// vertex colors. All numbers are multiples of small powers of two, so they are exact in single
+/// precision.
 fn seamed_box() -> TriMesh {
     let mut mesh = primitives::box_mesh(DVec3::new(1.0, 2.0, 0.5), [2, 1, 4]);
     let flat = |triangle: usize| {
@@ -50,7 +51,7 @@ fn seamed_box() -> TriMesh {
     mesh.vertex.colors = mesh.positions.iter().map(|p| DVec4::new(p.x.abs() / 4.0, 0.25, 0.5, 1.0)).collect();
     mesh.materials = vec!["bark".into(), "moss green".into()];
     mesh.triangle_materials = normals.iter().map(|normal| u32::from(normal.z > 0.5)).collect();
-    // Grouped by material, as glTF has them.
+    // Grouped by material, as in glTF.
     let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
     order.sort_by_key(|&triangle| mesh.triangle_materials[triangle]);
     permute(&mut mesh.triangles, &order);

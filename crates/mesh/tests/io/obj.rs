@@ -38,7 +38,7 @@ fn forward_references_are_allowed() {
     assert_eq!(mesh.triangles, [[0, 1, 2]]);
 }
 
-/// More faces than are read at a time come before what they name, some of them counting back.
+/// Faces precede their vertices, more of them than fit into one object, some with negative indices.
 #[test]
 fn large_files_may_refer_forward() {
     let ball = primitives::icosphere(1.0, 5);
@@ -58,7 +58,7 @@ fn large_files_may_refer_forward() {
 }
 
 #[test]
-fn faces_whose_corners_differ_in_kind_have_only_what_all_have() {
+fn faces_have_only_attributes_of_all_corners() {
     let mesh = parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0.5 0.5\nf 1/1 2 3/1\nf 1/1 2/1 4/1\n");
     assert_eq!(mesh.corner.uvs[0].concat().iter().map(|uv| uv.x).collect::<Vec<_>>(), [0.0, 0.0, 0.0, 0.5, 0.5, 0.5]);
 }
@@ -78,8 +78,8 @@ fn vertices_split_at_a_seam_are_welded_and_touching_ones_are_not() {
 }
 
 #[test]
-fn polygons_are_split_without_turning_a_triangle_over() {
-    // An arrowhead: only the diagonal from its tip to its notch lies inside.
+fn triangulation_keeps_the_orientation() {
+    // An arrowhead: only the diagonal from its tip to its notch is inside.
     let arrowhead = parse_obj("v 0 0 0\nv 2 -1 0\nv 0.5 0 0\nv 2 1 0\nf 2 3 4 1\n");
     let star = parse_obj(
         "v 0 3 0\nv 0.5 1 0\nv 3 1 0\nv 1 -0.5 0\nv 2 -3 0\nv 0 -1 0\nv -2 -3 0\nv -1 -0.5 0\nv -3 1 0\nv -0.5 1 0\n\
@@ -95,7 +95,7 @@ fn polygons_are_split_without_turning_a_triangle_over() {
     }
 }
 
-/// Two combs against each other: many corners that are not convex, and ears that others lie in.
+/// Two opposed combs: many reflex corners, and ears that contain other corners.
 #[test]
 fn long_polygons_keep_their_area() {
     let teeth = 500;
@@ -112,7 +112,7 @@ fn long_polygons_keep_their_area() {
     for triangle in 0..mesh.triangles.len() {
         let [a, b, c] = mesh.corners(triangle);
         let turn = (b - a).cross(c - a).z;
-        assert!(turn < 0.0, "triangle {triangle} is turned over");
+        assert!(turn < 0.0, "triangle {triangle} is reversed");
         area -= 0.5 * turn;
     }
     let corners = &mesh.positions;
@@ -134,13 +134,14 @@ fn quadrilaterals_get_the_rounder_triangles() {
 
 #[test]
 fn corners_on_a_line_keep_their_edges() {
-    // A box open at the top, with a corner of one face on an edge of it: leaving it out would open a gap.
+    // A face with a corner on one of its straight sides: dropping that corner would open a gap.
     let mesh = parse_obj("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4 5\n");
     assert_eq!(mesh.triangles.len(), 3);
     assert_eq!(mesh.check().boundary_edges, [[0, 1], [0, 4], [1, 2], [2, 3], [3, 4]]);
 }
 
-/// Polygons that cross themselves, go back on themselves or have no area: none may leave a gap to its neighbors.
+/// Polygons that cross themselves, fold back or have no area: none may leave a gap to its
+/// neighbors.
 #[test]
 fn broken_polygons_keep_their_edges() {
     let crossed = "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nv -1 1 0\n";
@@ -153,7 +154,7 @@ fn broken_polygons_keep_their_edges() {
     }
 }
 
-/// Vertices that no face uses, attributes of some faces or vertices alone, lines and points between them.
+/// Unused vertices, attributes of some faces or vertices only, and lines and points in between.
 #[test]
 fn order_and_partial_attributes_survive() {
     let mesh = parse_obj(
@@ -169,7 +170,7 @@ fn order_and_partial_attributes_survive() {
     assert_eq!(uvs, [0.5, 0.0, 0.0]);
     let normals: Vec<f32> = mesh.corner.normals.iter().map(|corners| corners[0].x).collect();
     assert_eq!((normals[0], normals[2]), (1.0, 1.0));
-    // The second face has the normal of its plane, which is rounded once more.
+    // The second face gets the normal of its plane, which is rounded once more.
     assert!((normals[1] + (1.0_f32 / 3.0).sqrt()).abs() < 2.0 * f32::EPSILON);
     let colors: Vec<[f64; 4]> = mesh.vertex.colors.iter().map(|color| color.to_array()).collect();
     assert_eq!(colors[..3], [[1.0; 4], [0.5, 0.0, 0.0, 0.25], [1.0; 4]]);
@@ -186,9 +187,9 @@ fn attributes_may_be_counted_back() {
     assert_eq!(mesh.corner.normals, [[Vec3::Z; 3]; 2]);
 }
 
-/// Zero, too far back, and longer than any computer word.
+/// Zero, too far back, and longer than any machine word.
 #[test]
-fn indices_of_nothing_are_errors() {
+fn rejects_indices_out_of_range() {
     let error = |corner: &str| {
         let start = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n";
         parse(Format::Obj, &format!("{start}f {corner} 2/1/1 3/1/1\n")).unwrap_err().to_string()
@@ -214,7 +215,7 @@ fn errors_name_the_line() {
     assert_eq!(error("v 0 0\n"), "line 1: 3 numbers expected, 2 found");
     assert_eq!(error(&format!("{start}f 1 2\n")), "line 5: a face needs at least three corners, 2 found");
     assert_eq!(error(&format!("{start}f 1 2 x\n")), "line 5: 'x' is not a face corner (v, v/vt, v//vn or v/vt/vn)");
-    // The vertex comes after the face that counts back from its end, and before one that names too many.
+    // A vertex after a face with negative indices, and before a face with an index out of range.
     let late = format!("{start}f -3 -2 -1\nv 0 0 1\nf 1 2 5\n");
     assert_eq!(error(&late), "line 7: vertex 5 is out of range: there are 4");
     assert_eq!(

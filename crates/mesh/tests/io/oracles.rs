@@ -1,4 +1,4 @@
-//! What is read against the libraries for the same formats, asked directly.
+//! Comparison with direct calls of the libraries for the same formats.
 
 use std::io::Cursor;
 
@@ -14,7 +14,7 @@ fn corner_positions(mesh: &TriMesh) -> Vec<[DVec3; 3]> {
 
 #[test]
 fn obj_agrees_with_tobj() {
-    // The larger one is read in several pieces.
+    // The larger mesh is read as several objects.
     for mesh in [seamed_box(), primitives::icosphere(0.3, 5)] {
         let bytes = written(Format::Obj, &mesh);
         let no_materials = |_: &std::path::Path| Ok(Default::default());
@@ -60,7 +60,7 @@ fn stl_agrees_with_stl_io() {
     }
 }
 
-/// The library validates the whole document and reads the numbers its own way.
+/// The library validates the whole document and reads the numbers independently.
 #[test]
 fn glb_agrees_with_gltf() {
     let mesh = seamed_box();

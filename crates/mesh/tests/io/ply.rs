@@ -54,7 +54,7 @@ fn errors_are_one_line() {
     assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "face 0 names vertex 3, but the file has 3 vertices");
     assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), "face 0 names vertex -1, but the file has 3 vertices");
     assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), "face 0 has fewer than three corners");
-    // Why a line is refused, the library says.
+    // The library provides the reason.
     let refused = |body: &str, place: &str, problem: &str| {
         let message = error(body);
         assert!(message.starts_with(place) && message.contains(problem), "{message}");
@@ -79,7 +79,7 @@ fn errors_are_one_line() {
         "line 3: 'element vertex many' does not belong in the header of a PLY file"
     );
     assert_eq!(header_error("ply\nformat ascii 1.0\n"), "the header has no 'end_header'");
-    // A count without anything to count must not be looped over.
+    // A large count of elements without properties must not cause a long loop.
     assert!(parse(Format::Ply, "ply\nformat ascii 1.0\nelement vertex 99999999999\nend_header\n").is_err());
 }
 
@@ -116,7 +116,7 @@ fn quadrilaterals_among_triangles_are_read_from_binary_files() {
     assert_eq!(error, "face 2 names vertex 9, but the file has 5 vertices");
 }
 
-/// Triangles are read as plain numbers as long as nothing else comes, in parts of some thousand.
+/// The fast path for triangles ends at the first polygon, after several chunks.
 #[test]
 fn polygons_may_come_after_many_triangles() {
     const TRIANGLES: usize = 5000;

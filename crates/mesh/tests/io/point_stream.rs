@@ -1,9 +1,9 @@
-//! Points read and written chunk by chunk.
+//! Streaming points chunk by chunk.
 
 use glam::DVec3;
 use isochore_mesh::io::{PointStream, PointStreamError};
 
-/// Raises all points of a file of this name and these bytes, two at a time.
+/// Raises all points of a file with the given name and bytes, two at a time.
 fn raised(name: &str, bytes: &[u8]) -> Result<Vec<u8>, PointStreamError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
@@ -19,7 +19,8 @@ fn raised(name: &str, bytes: &[u8]) -> Result<Vec<u8>, PointStreamError> {
     Ok(out)
 }
 
-/// Three vertices with a byte before their coordinates and a short number after them, and another byte before all and after.
+/// Three vertices with a byte before their coordinates and a short integer after them, and another
+/// byte before and after all vertices.
 fn binary(order: &str, number: impl Fn(f32) -> [u8; 4], points: [[f32; 3]; 3]) -> Vec<u8> {
     let mut file = format!(
         "ply\nformat binary_{order}_endian 1.0\ncomment caf\u{e9}\nelement seal 1\nproperty uchar byte\nelement vertex 3\n\
@@ -38,7 +39,7 @@ fn binary(order: &str, number: impl Fn(f32) -> [u8; 4], points: [[f32; 3]; 3]) -
 const POINTS: [[f32; 3]; 3] = [[0.0, 1.0, 2.0], [3.0, -4.0, 0.25], [-1.5, 0.0, 8.0]];
 
 #[test]
-fn records_of_both_byte_orders_keep_what_is_no_coordinate() {
+fn other_bytes_are_kept_in_both_byte_orders() {
     let moved = POINTS.map(|[x, y, z]| [x, y + 0.5, z + 1.0]);
     for (order, number) in [("little", f32::to_le_bytes as fn(f32) -> [u8; 4]), ("big", f32::to_be_bytes)] {
         assert_eq!(raised("in.ply", &binary(order, number, POINTS)).unwrap(), binary(order, number, moved));
@@ -46,11 +47,11 @@ fn records_of_both_byte_orders_keep_what_is_no_coordinate() {
 }
 
 #[test]
-fn broken_points_are_named_by_place() {
+fn errors_name_the_point_and_its_location() {
     let [a, b, _] = POINTS;
     let whole = binary("little", f32::to_le_bytes, [a, b, [f32::NAN; 3]]);
     let error = raised("in.ply", &whole).unwrap_err().to_string();
-    // Fifteen bytes a record, and the last byte.
+    // A record has fifteen bytes, and one byte follows the last.
     let place = format!("point 2 at byte {}: has a coordinate that is not a finite number", whole.len() - 16);
     assert!(error.ends_with(&place), "{error}");
     let error = raised("in.ply", &whole[..whole.len() - 20]).unwrap_err().to_string();

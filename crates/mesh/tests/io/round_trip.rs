@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use crate::{FORMATS, reread, seamed_box};
 
-/// What `format` keeps of `mesh`.
+/// The part of `mesh` that `format` stores.
 fn kept(format: Format, mesh: &TriMesh) -> TriMesh {
     let mut kept = format.stored(mesh);
     if matches!(format, Format::Stl | Format::Off) {
@@ -21,7 +21,7 @@ fn kept(format: Format, mesh: &TriMesh) -> TriMesh {
     kept
 }
 
-/// `mesh` with its vertices numbered by first use, as STL, which has none, gives them back.
+/// `mesh` with its vertices numbered by first use, as a reader of STL numbers them.
 fn numbered_by_use(mesh: &TriMesh) -> TriMesh {
     let mut numbers = vec![None; mesh.positions.len()];
     let mut positions = Vec::new();
@@ -35,75 +35,75 @@ fn numbered_by_use(mesh: &TriMesh) -> TriMesh {
     TriMesh::new(positions, triangles)
 }
 
-fn assert_comes_back(format: Format, mesh: &TriMesh) {
+fn assert_round_trips(format: Format, mesh: &TriMesh) {
     let mut expected = kept(format, mesh);
     if format == Format::Stl {
         expected = numbered_by_use(&expected);
     }
     let mut found = reread(format, mesh);
-    // Names of materials become a document of their own.
+    // Names of materials become carried assets.
     found.assets = Assets::default();
     assert_eq!(found, expected, "{format:?}");
 }
 
 #[test]
-fn bare_mesh_comes_back_bit_by_bit() {
+fn bare_mesh_round_trips_exactly() {
     for format in FORMATS {
-        assert_comes_back(format, &primitives::icosphere(0.1, 3));
-        assert_comes_back(format, &primitives::latitude_longitude_sphere(1e10, 9, 5));
+        assert_round_trips(format, &primitives::icosphere(0.1, 3));
+        assert_round_trips(format, &primitives::latitude_longitude_sphere(1e10, 9, 5));
     }
 }
 
 #[test]
-fn seams_colors_and_materials_come_back() {
+fn seams_colors_and_materials_round_trip() {
     let mesh = seamed_box();
     assert!(mesh.check().is_closed());
     for format in FORMATS {
-        assert_comes_back(format, &mesh);
+        assert_round_trips(format, &mesh);
         assert!(reread(format, &mesh).check().is_closed());
     }
 }
 
 #[test]
-fn corner_colors_come_back() {
+fn corner_colors_round_trip() {
     let mut mesh = seamed_box();
     mesh.vertex.colors.clear();
     mesh.corner.colors = (0..mesh.triangles.len()).map(|t| [DVec4::new(t as f64 / 64.0, 0.0, 1.0, 0.5); 3]).collect();
     for format in [Format::Glb, Format::Gltf, Format::Ply] {
-        assert_comes_back(format, &mesh);
+        assert_round_trips(format, &mesh);
     }
-    // Whole bytes are written as such.
+    // Multiples of 1/255 are written as bytes.
     mesh.corner.colors = (0..mesh.triangles.len()).map(|t| [DVec4::splat(t as f64 / 255.0); 3]).collect();
-    assert_comes_back(Format::Ply, &mesh);
+    assert_round_trips(Format::Ply, &mesh);
 }
 
 #[test]
-fn smooth_attributes_come_back_without_splitting() {
+fn smooth_attributes_round_trip_without_splitting() {
     let mut mesh = primitives::icosphere(1.0, 2);
     let normals = mesh.vertex_normals();
     mesh.corner.normals = mesh.triangles.iter().map(|t| t.map(|v| normals[v as usize].as_vec3())).collect();
     for format in [Format::Obj, Format::Ply] {
-        assert_comes_back(format, &mesh);
+        assert_round_trips(format, &mesh);
     }
     let found = reread(Format::Glb, &mesh);
     assert_eq!(found.positions, Format::Glb.stored(&mesh).positions);
     for (found, expected) in found.corner.normals.iter().flatten().zip(mesh.corner.normals.iter().flatten()) {
-        // They are made unit again, which rounds each of three components by half an ulp.
+        // The writer normalizes them, which rounds each of three components by half an ulp.
         assert!(found.distance(*expected) < 2.0 * f32::EPSILON);
     }
 }
 
 #[test]
-fn unused_vertices_and_uv_sets_come_back() {
+fn unused_vertices_and_uv_sets_round_trip() {
     let mut mesh = seamed_box();
     mesh.positions.insert(0, DVec3::new(9.0, 9.0, 9.0));
     mesh.vertex.colors.insert(0, DVec4::ONE);
     mesh.triangles.iter_mut().flatten().for_each(|vertex| *vertex += 1);
     mesh.corner.uvs.push(mesh.corner.uvs[0].iter().map(|uvs| uvs.map(|uv| uv * 0.5)).collect());
-    assert_comes_back(Format::Glb, &mesh);
+    assert_round_trips(Format::Glb, &mesh);
     mesh.corner.uvs.pop();
-    assert_comes_back(Format::Obj, &mesh);
-    assert_comes_back(Format::Ply, &mesh);
+    assert_round_trips(Format::Obj, &mesh);
+    assert_round_trips(Format::Ply, &mesh);
 }
 
 #[test]
@@ -129,12 +129,12 @@ fn number() -> impl Strategy<Value = f64> {
     prop_oneof![any::<f64>().prop_filter("finite", |value| value.is_finite()), (-4..4).prop_map(f64::from), -1.0..1.0,]
 }
 
-/// The same in single precision.
+/// Any finite number in single precision, and often a simple one.
 fn single() -> impl Strategy<Value = f32> {
     number().prop_map(|value| value as f32).prop_filter("finite", |value| value.is_finite())
 }
 
-/// Triangles any way round over vertices anywhere, each position used by one vertex only.
+/// Triangles of any orientation over vertices at any distinct positions.
 fn any_mesh() -> impl Strategy<Value = TriMesh> {
     let positions = prop::collection::vec([number(), number(), number()].prop_map(DVec3::from_array), 3..20);
     let distinct = positions.prop_map(|positions| {
@@ -164,21 +164,21 @@ fn any_mesh() -> impl Strategy<Value = TriMesh> {
 
 proptest! {
     #[test]
-    fn any_mesh_comes_back_from_formats_of_doubles(mesh in any_mesh()) {
+    fn any_mesh_round_trips_in_double_precision(mesh in any_mesh()) {
         for format in [Format::Obj, Format::Ply, Format::Off] {
-            assert_comes_back(format, &mesh);
+            assert_round_trips(format, &mesh);
         }
     }
 
     #[test]
-    fn any_mesh_of_single_precision_comes_back_from_gltf(mut mesh in any_mesh()) {
-        // Numbers that single precision holds, where they still tell the vertices apart.
+    fn any_mesh_of_single_precision_round_trips_in_gltf(mut mesh in any_mesh()) {
+        // Round to single precision, and skip meshes whose vertices then coincide.
         let round = |value: f64| f64::from(value.clamp(-1e30, 1e30) as f32);
         mesh.positions.iter_mut().for_each(|position| *position = position.map(round));
         let positions = &mesh.positions;
         prop_assume!((1..positions.len()).all(|vertex| !positions[..vertex].contains(&positions[vertex])));
         for format in [Format::Glb, Format::Gltf] {
-            assert_comes_back(format, &mesh);
+            assert_round_trips(format, &mesh);
         }
     }
 }

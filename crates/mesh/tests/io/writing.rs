@@ -6,7 +6,7 @@ use isochore_mesh::{TriMesh, primitives};
 
 use crate::FORMATS;
 
-/// A writer with room for `left` bytes.
+/// A writer with capacity for `left` bytes.
 struct FullDisk {
     left: usize,
 }
@@ -37,7 +37,7 @@ fn full_disk_is_an_error() {
 }
 
 #[test]
-fn file_is_replaced_whole_and_failures_leave_it() {
+fn file_is_replaced_atomically() {
     let folder = tempfile::tempdir().unwrap();
     for extension in ["obj", "gltf", "glb", "ply", "stl", "off"] {
         let path = folder.path().join("mesh").with_extension(extension);
@@ -59,7 +59,7 @@ fn file_is_replaced_whole_and_failures_leave_it() {
 }
 
 #[test]
-fn coordinates_beyond_single_precision_are_refused_where_there_is_no_other() {
+fn rejects_coordinates_beyond_single_precision() {
     let far = TriMesh::new(vec![DVec3::ZERO, DVec3::X * 1e39, DVec3::Y], vec![[0, 1, 2]]);
     for format in FORMATS {
         let result = io::write_to(format, &far, &mut Vec::new());
@@ -71,7 +71,7 @@ fn coordinates_beyond_single_precision_are_refused_where_there_is_no_other() {
 }
 
 #[test]
-fn index_out_of_range_is_refused() {
+fn rejects_index_out_of_range() {
     let mesh = TriMesh::new(vec![DVec3::ZERO; 3], vec![[0, 1, 3]]);
     for format in FORMATS {
         assert!(matches!(io::write_to(format, &mesh, &mut Vec::new()), Err(WriteError::Invalid { .. })));

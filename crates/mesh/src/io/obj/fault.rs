@@ -1,21 +1,22 @@
-//! Which line of a broken OBJ file is at fault.
+//! Finding the faulty line of an OBJ file.
 
 use super::statement::Statements;
 use crate::io::text::{Words, at_line, parse_integer, read_numbers, text};
 use crate::io::{LineProblem, ParseError};
 
-/// What the three indices of a corner stand for.
+/// The elements that the three indices of a corner refer to.
 const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
-/// Looks for the first line that breaks the format. An index that is out of range counts where no line is broken otherwise,
-/// because what it stands for may come later.
+/// Reports the first line that violates the format. Indices out of range are reported only if no
+/// line is otherwise invalid, because the element of an index may come later in the file.
 pub(super) fn check_lines(bytes: &[u8]) -> Result<(), ParseError> {
     let totals = check_statements(bytes, [usize::MAX; 3])?;
     check_statements(bytes, totals)?;
     Ok(())
 }
 
-/// Returns the numbers of vertices, texture coordinates and normals, of which there are to be `totals`.
+/// Checks all statements against `totals`, the numbers of vertices, texture coordinates and
+/// normals, and returns the numbers found.
 fn check_statements(bytes: &[u8], totals: [usize; 3]) -> Result<[usize; 3], ParseError> {
     let mut counts = [0; 3];
     for statement in Statements::of(bytes) {
@@ -24,12 +25,13 @@ fn check_statements(bytes: &[u8], totals: [usize; 3]) -> Result<[usize; 3], Pars
     Ok(counts)
 }
 
-/// `counts` are those of the statements before, which negative indices count back from.
+/// Checks one statement. `counts` holds the elements of the preceding statements, from which
+/// negative indices count back.
 fn check_statement(statement: &[u8], counts: &mut [usize; 3], totals: [usize; 3]) -> Result<(), LineProblem> {
     let mut words = Words { rest: statement };
     let kind = match words.next().unwrap_or_default() {
         b"v" => {
-            // Seven are a position with color and alpha.
+            // Seven numbers are a position with color and alpha.
             read_numbers::<7>(words, 3)?;
             0
         }
@@ -48,7 +50,7 @@ fn check_statement(statement: &[u8], counts: &mut [usize; 3], totals: [usize; 3]
     Ok(())
 }
 
-/// Refuses a face that is no polygon, or names what there is not.
+/// Refuses a face with fewer than three corners or with an invalid index.
 pub(super) fn check_face(words: Words<'_>, counts: [usize; 3], totals: [usize; 3]) -> Result<(), LineProblem> {
     let mut corners = 0;
     for word in words {
@@ -60,13 +62,13 @@ pub(super) fn check_face(words: Words<'_>, counts: [usize; 3], totals: [usize; 3
 
 fn check_corner(word: &[u8], counts: [usize; 3], totals: [usize; 3]) -> Result<(), LineProblem> {
     let not_a_corner = || LineProblem::NotACorner(text(word));
-    for (place, field) in word.split(|&byte| byte == b'/').enumerate() {
-        let kind = *KINDS.get(place).ok_or_else(not_a_corner)?;
-        if field.is_empty() && place > 0 {
+    for (field_index, field) in word.split(|&byte| byte == b'/').enumerate() {
+        let kind = *KINDS.get(field_index).ok_or_else(not_a_corner)?;
+        if field.is_empty() && field_index > 0 {
             continue;
         }
         let index = parse_integer(field).ok_or_else(not_a_corner)?;
-        let count = if index <= 0 { counts[place] } else { totals[place] };
+        let count = if index <= 0 { counts[field_index] } else { totals[field_index] };
         if index == 0 || index.unsigned_abs() > count as u64 {
             return Err(LineProblem::IndexOutOfRange { kind, index, count });
         }

@@ -1,4 +1,4 @@
-//! The lines of an OBJ file as the library gets them.
+//! The lines of an OBJ file as passed to the library.
 
 use std::io::{self, BufRead, Read};
 
@@ -10,45 +10,46 @@ use super::statement::{Statement, Statements};
 use crate::io::LineProblem;
 use crate::io::text::{Words, parse_integer, read_numbers, text};
 
-/// Bytes that are made ready at a time.
+/// Bytes that are prepared at a time.
 const BUFFER: usize = 1 << 15;
 
-/// The statements `v`, `vt`, `vn` and `f` in the order of the file, a line each, without comments; the others are of no
-/// concern to the library, or taken for something else by it.
+/// The statements `v`, `vt`, `vn` and `f` in the order of the file, one per line, without comments.
+/// The library does not need the others, or misinterprets them.
 ///
-/// It numbers the vertices of every object anew, in the order of their use, and does not tell which they were. So the corners
-/// of faces are kept.
+/// The library renumbers the vertices of every object in the order of their use and drops the
+/// original indices. Therefore `kept` stores the corners of all faces.
 pub(super) struct Lines<'a> {
     statements: Statements<'a>,
     buffer: Vec<u8>,
-    /// Bytes of the buffer that the library has.
+    /// Bytes of the buffer that the library has consumed.
     consumed: usize,
     object_size: usize,
     faces_of_object: usize,
     pub(super) kept: Kept,
 }
 
-/// What the library has no place for.
+/// The contents of the file that the library drops.
 #[derive(Default)]
 pub(super) struct Kept {
     /// Numbers of vertices, texture coordinates and normals.
     pub(super) counts: [usize; 3],
-    /// Vertices of the corners of all faces, by their numbers in the file.
+    /// Vertices of the corners of all faces, as indices of the file.
     pub(super) corners: Vec<u32>,
-    /// As many as there are vertices, or none.
+    /// One color per vertex, or empty.
     pub(super) colors: Vec<DVec4>,
-    /// Kinds of the faces in their order, each with how many of it follow each other.
+    /// Runs of faces of the same kind, each with its length.
     pub(super) runs: Vec<(FaceKind, usize)>,
-    /// Names of the materials, of which the empty one is that of faces without any.
+    /// Names of the materials. Faces without a material have the empty one.
     pub(super) materials: Vec<String>,
     pub(super) libraries: Vec<String>,
-    /// True where corners of a face name different kinds of attributes, to the rest of which the library pays no heed.
+    /// Whether some face names an attribute at some of its corners only. The library does not check
+    /// those indices.
     pub(super) has_uneven_faces: bool,
     material: u32,
     material_numbers: FxHashMap<String, u32>,
 }
 
-/// What faces may have in common.
+/// Material and attributes of a face.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct FaceKind {
     pub(super) material: u32,
@@ -58,7 +59,7 @@ pub(super) struct FaceKind {
 }
 
 impl<'a> Lines<'a> {
-    /// Those of a file, with a new object after every `object_size` faces.
+    /// The lines of a file, with a new object after every `object_size` faces.
     pub(super) fn new(bytes: &'a [u8], object_size: usize) -> Self {
         let statements = Statements::of(bytes);
         let buffer = Vec::with_capacity(2 * BUFFER);
@@ -72,7 +73,8 @@ impl<'a> Lines<'a> {
             b"v" => self.push_vertex(&plain)?,
             b"vt" => {
                 self.kept.counts[1] += 1;
-                // The library wants two numbers where one will do, and passes over a third.
+                // The library requires two numbers, while the format requires only one. It ignores
+                // a third.
                 self.push_line(&plain, b" 0\n");
             }
             b"vn" => {
@@ -137,7 +139,8 @@ impl Read for Lines<'_> {
 }
 
 impl Kept {
-    /// The color after a position, with or without alpha; one number there is a weight.
+    /// Adds the color after a position, with or without alpha. A single number is a weight and
+    /// ignored.
     fn push_color(&mut self, words: &[u8]) -> Result<(), LineProblem> {
         if let ([r, g, b, alpha], found @ 3..) = read_numbers(Words { rest: words }, 0)? {
             self.colors.resize(self.counts[0], DVec4::ONE);
@@ -181,11 +184,12 @@ impl Kept {
     }
 }
 
-/// Most digits of an index in a usual face: one more, and it may not fit into 32 bits.
+/// Largest number of digits of an index on the fast path. A larger number may not fit into 32 bits.
 const MOST_DIGITS: usize = 9;
 
-/// How many corners of a face have each of the three indices, of which the vertices are added. None for faces that take a closer
-/// look: other spaces, indices with a sign, of zero or very long ones, and whatever is no corner.
+/// Adds the vertices of a face and returns how many corners have each of the three indices. `None`
+/// for faces that need the general parser: other white space, indices with a sign, leading zeros or
+/// many digits, and invalid corners.
 fn read_usual_corners(mut rest: &[u8], vertices: &mut Vec<u32>) -> Option<[usize; 3]> {
     let mut found = [0; 3];
     while let [b' ', corner @ ..] = rest {
@@ -203,7 +207,7 @@ fn read_usual_corners(mut rest: &[u8], vertices: &mut Vec<u32>) -> Option<[usize
     rest.is_empty().then_some(found)
 }
 
-/// A number in front of other bytes, zero where there are no digits.
+/// The number at the start of `bytes` and the bytes after it. Zero if there are no digits.
 fn split_number(bytes: &[u8]) -> Option<(u32, &[u8])> {
     let (mut number, mut length) = (0, 0);
     while let Some(digit @ 0..=9) = bytes.get(length).map(|byte| byte.wrapping_sub(b'0')) {
@@ -216,9 +220,10 @@ fn split_number(bytes: &[u8]) -> Option<(u32, &[u8])> {
     Some((number, &bytes[length..]))
 }
 
-/// The same of any face, of whose indices negative ones count back from `counts`.
+/// The general parser of faces. Negative indices count back from `counts`.
 fn read_corners(words: Words<'_>, counts: [usize; 3], vertices: &mut Vec<u32>) -> Result<[usize; 3], LineProblem> {
-    // Whatever is named may come later in the file. On what is refused here, the library's arithmetic may overflow.
+    // Elements may come later in the file, so positive indices are not limited here. The refused
+    // indices would overflow in the library's arithmetic.
     check_face(words.clone(), counts, [usize::MAX; 3])?;
     let mut found = [0; 3];
     for word in words {
@@ -231,9 +236,9 @@ fn read_corners(words: Words<'_>, counts: [usize; 3], vertices: &mut Vec<u32>) -
     Ok(found)
 }
 
-/// A vertex up to its third number, and what comes after it.
+/// Splits a vertex statement after its third number.
 pub(super) fn split_vertex(statement: &[u8]) -> Result<(&[u8], &[u8]), LineProblem> {
-    // The usual vertex has three spaces, and needs no closer look at its words.
+    // Fast path: a statement with three spaces ends after its third number.
     if statement.iter().filter(|&&byte| byte <= b' ').count() == 3 {
         return Ok((statement, &[]));
     }
@@ -244,7 +249,7 @@ pub(super) fn split_vertex(statement: &[u8]) -> Result<(&[u8], &[u8]), LineProbl
     }
 }
 
-/// What follows the first word, which may hold the sign of a comment.
+/// The text after the first word. Names may contain a `#`.
 fn name(statement: &Statement<'_>) -> String {
     let mut words = Words { rest: statement.verbatim() };
     words.next();

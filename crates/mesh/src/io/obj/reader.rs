@@ -16,16 +16,17 @@ use crate::io::polygon::triangulate;
 use crate::io::text::push_index;
 use crate::measure::triangle_normal;
 
-/// Faces that make an object for the library, whose tables then fit into a cache. Much larger, and they do not; much smaller,
-/// and vertices are repeated in many objects.
+/// Faces per object for the library. Its tables for much larger objects exceed the cache; with much
+/// smaller ones, vertices are repeated in many objects.
 const OBJECT_SIZE: usize = 1 << 13;
 
-/// Reads OBJ: `v` with optional color, `vt`, `vn`, `f`, `usemtl` and `mtllib`; other statements are passed over.
+/// Reads OBJ: `v` with optional color, `vt`, `vn`, `f`, `usemtl` and `mtllib`. Other statements are
+/// ignored.
 ///
-/// Faces may refer to vertices that come later. Vertices keep their order, used or not, except that those which the file
-/// splits along seams are welded.
+/// Faces may refer to later vertices. Vertices keep their order, used or not, except that vertices
+/// split along seams are welded.
 pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
-    // What comes after the faces that name it is there only once the whole file is read, as one object.
+    // References to later elements can be resolved only if the whole file is read as one object.
     let read = read_objects(bytes, OBJECT_SIZE).or_else(|_| read_objects(bytes, usize::MAX));
     match read {
         Ok(mesh) => Ok(mesh.welded_at_boundary()),
@@ -78,13 +79,14 @@ fn positions(bytes: &[u8], objects: &[tobj::Mesh], kept: &Kept) -> Result<Vec<DV
     Ok(positions)
 }
 
-/// The positions of vertices that no face names, which the library leaves out: all are made one face for it.
+/// The positions of vertices that no face uses, which the library drops. One artificial face of all
+/// of them makes the library parse them.
 fn positions_of(vertices: &[u32], bytes: &[u8]) -> Result<Vec<DVec3>, tobj::LoadError> {
     let (mut lines, mut face) = (Vec::new(), b"f".to_vec());
-    let mut wanted = vertices.iter().zip(1..).peekable();
+    let mut unused = vertices.iter().zip(1..).peekable();
     let statements = Statements::of(bytes).filter(|statement| statement.keyword() == b"v");
     for (statement, vertex) in statements.zip(0..) {
-        if let Some((_, index)) = wanted.next_if(|&(&wanted, _)| wanted == vertex) {
+        if let Some((_, index)) = unused.next_if(|&(&unused, _)| unused == vertex) {
             let plain = statement.plain();
             let (position, _) = split_vertex(&plain).map_err(|_| tobj::LoadError::PositionParseError)?;
             lines.extend_from_slice(position);
@@ -98,7 +100,7 @@ fn positions_of(vertices: &[u32], bytes: &[u8]) -> Result<Vec<DVec3>, tobj::Load
     Ok(positions.copied().map(DVec3::from_array).collect())
 }
 
-/// False where the library lets pass what the format forbids.
+/// Checks what the library accepts although the format forbids it.
 fn is_sound(objects: &[tobj::Mesh], positions: &[DVec3]) -> bool {
     let is_finite =
         |object: &tobj::Mesh| object.texcoords.iter().chain(&object.normals).all(|number| number.is_finite());
@@ -107,9 +109,10 @@ fn is_sound(objects: &[tobj::Mesh], positions: &[DVec3]) -> bool {
         && objects.iter().all(|object| is_finite(object) && is_polygon(object))
 }
 
-/// None where an object lacks attributes that its faces name, since they come later or not at all.
+/// Assembles the mesh. `None` if an object lacks attributes that its faces name, because they come
+/// later or are missing.
 fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Option<TriMesh> {
-    // Without a `usemtl` there is only the unnamed material that faces before one get.
+    // Without a `usemtl` the only material is the unnamed one of faces before a `usemtl`.
     let has_materials = kept.materials.iter().any(|name| !name.is_empty());
     let has_uvs = kept.runs.iter().any(|(kind, _)| kind.has_uvs);
     let has_normals = kept.runs.iter().any(|(kind, _)| kind.has_normals);
@@ -145,9 +148,10 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
                     uvs.push(triangle.map(|corner| if kind.has_uvs { uv(start + corner) } else { Vec2::ZERO }));
                 }
                 if has_normals {
-                    mesh.corner.normals.push(match kind.has_normals {
-                        true => triangle.map(|corner| normal(start + corner)),
-                        false => [triangle_normal(vertices.map(|vertex| positions[vertex as usize])).as_vec3(); 3],
+                    mesh.corner.normals.push(if kind.has_normals {
+                        triangle.map(|corner| normal(start + corner))
+                    } else {
+                        [triangle_normal(vertices.map(|vertex| positions[vertex as usize])).as_vec3(); 3]
                     });
                 }
             };
@@ -173,9 +177,9 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
     Some(mesh)
 }
 
-/// Numbers of the corners of an object's faces.
+/// The number of corners of each face of an object.
 fn sizes(object: &tobj::Mesh) -> impl Iterator<Item = usize> {
-    // No sizes stand for nothing but triangles.
+    // The library leaves the list empty if all faces are triangles.
     let triangles = if object.face_arities.is_empty() { object.indices.len() / 3 } else { 0 };
     object.face_arities.iter().map(|&size| size as usize).chain(repeat_n(3, triangles))
 }

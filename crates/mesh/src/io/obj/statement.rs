@@ -4,12 +4,12 @@ use std::borrow::Cow;
 
 use crate::io::text::Words;
 
-/// A statement as it stands in the file.
+/// A statement of the file, unmodified.
 pub(super) struct Statement<'a> {
     /// The line on which it begins, counted from one.
     pub(super) line: usize,
     bytes: &'a [u8],
-    /// True where there may be a comment or a backslash in it.
+    /// Whether it may contain a comment or a backslash.
     is_marked: bool,
 }
 
@@ -29,7 +29,7 @@ impl<'a> Statement<'a> {
         Words { rest: self.bytes }.next().unwrap_or_default()
     }
 
-    /// All of it, for names that may hold the sign of a comment.
+    /// The whole statement, for names that may contain a `#`.
     pub(super) fn verbatim(&self) -> &'a [u8] {
         self.bytes
     }
@@ -40,7 +40,7 @@ pub(super) struct Statements<'a> {
     bytes: &'a [u8],
     start: usize,
     line: usize,
-    /// Where the next comment or backslash may be.
+    /// Position of the next comment or backslash.
     mark: usize,
 }
 

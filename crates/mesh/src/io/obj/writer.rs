@@ -8,8 +8,9 @@ use rustc_hash::FxHashMap;
 use crate::TriMesh;
 use crate::io::text::{LineWriter, Number};
 
-/// Writes OBJ. Numbers are the shortest decimals that read back as the same ones, normals and texture coordinates
-/// in single precision. Of several UV sets the first is written; corner colors, skin and textures have no place in the format.
+/// Writes OBJ. Numbers are the shortest decimals that read back as the same numbers, normals and
+/// texture coordinates in single precision. Only the first UV set is written. The format cannot
+/// store corner colors, skin and textures.
 pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
     let mut out = LineWriter::new(writer);
     for library in &mesh.assets.material_libraries {
@@ -38,7 +39,8 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
         if new != material {
             material = new;
             let name = new.and_then(|number| mesh.materials.get(number as usize)).map_or("", String::as_str);
-            // Faces without material that come first need no name; later ones can only be told apart by one.
+            // Leading faces without a material need no name. Later ones need one to end the
+            // previous material.
             if triangle > 0 || !name.is_empty() {
                 out.push_text("usemtl ");
                 out.push_text(if name.is_empty() { "none" } else { name });
@@ -65,7 +67,8 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
     out.finish()
 }
 
-/// Writes each distinct value once, in the order of first use, and returns the numbers of the corners, from one.
+/// Writes each distinct value once, in the order of first use, and returns the indices of the
+/// corners, counted from one.
 fn write_distinct<T: Copy, F: Number, const N: usize>(
     out: &mut LineWriter<'_>,
     keyword: &str,

@@ -8,14 +8,15 @@ use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyAccess};
 
 use crate::io::ParseError;
 
-/// Elements that are read at a time. Many more, and they take memory beside the mesh; many fewer, and each call shows.
+/// Elements that are read at a time. Larger values take more memory besides the mesh; smaller ones
+/// make the cost of each call noticeable.
 const CHUNK: usize = 1 << 10;
 
-/// What is left of the data, read element by element in the order of the header.
+/// The unread data, which is read element by element in the order of the header.
 pub(super) struct Body<'a> {
     header: &'a Header,
     reader: Reader<&'a [u8]>,
-    /// Lines of the file before those that the reader counts.
+    /// Lines of the file before the first one that the reader counts.
     lines_before: usize,
 }
 
@@ -24,7 +25,7 @@ impl<'a> Body<'a> {
         Self { header, reader: Reader::new(bytes), lines_before }
     }
 
-    /// The same data, to be read once more from here on.
+    /// A second reader of the unread data.
     pub(super) fn copy(&self) -> Self {
         Self::new(self.header, self.rest(), self.lines_before + self.reader.line().max(1) - 1)
     }
@@ -33,10 +34,11 @@ impl<'a> Body<'a> {
         self.reader.get_ref()
     }
 
-    /// Hands over all elements of a kind, with their numbers.
+    /// Passes all elements of a kind to `take`, with their indices.
     ///
     /// # Errors
-    /// [`ParseError::Malformed`], naming the element and, in text, its line; and what `take` returns.
+    /// [`ParseError::Malformed`], which names the element and, in text, its line; and errors of
+    /// `take`.
     pub(super) fn read<E: PropertyAccess>(
         &mut self,
         element: &ElementDef,
@@ -50,16 +52,16 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// The numbers of all elements of a kind, as many at a time as are to be read.
+    /// The indices of all elements of a kind, in chunks to be read at once.
     pub(super) fn parts(element: &ElementDef) -> impl Iterator<Item = Range<usize>> + use<> {
         let count = element.count;
         (0..count).step_by(CHUNK).map(move |first| first..count.min(first + CHUNK))
     }
 
-    /// The elements with these numbers, which are the next ones.
+    /// Reads the elements with the indices `part`, which must be the next ones.
     ///
     /// # Errors
-    /// [`ParseError::Malformed`], naming the element and, in text, its line.
+    /// [`ParseError::Malformed`], which names the element and, in text, its line.
     pub(super) fn read_part<E: PropertyAccess>(
         &mut self,
         element: &ElementDef,
@@ -68,7 +70,7 @@ impl<'a> Body<'a> {
         let element = ElementDef { count: part.len(), ..element.clone() };
         let start = self.reader.line().max(1);
         let read = Parser::new().read_payload_for_element(&mut self.reader, &element, self.header);
-        // Elements are counted as lines, of binary data too.
+        // The library counts elements as lines, in binary data too.
         read.map_err(|error| self.failed(&error, &element, part.start + self.reader.line() - start))
     }
 
@@ -87,7 +89,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// What the library complains of: the innermost of its errors, which stands last.
+/// The innermost error of the library, which is the last line of its message.
 pub(super) fn problem(error: &parser::ParseError) -> String {
     let message = error.to_string();
     let last = message.lines().last().unwrap_or_default().trim();

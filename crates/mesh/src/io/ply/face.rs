@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
 use ply_rs_bw::ply::{BeginList, ElementDef, PropertyAccess, PropertyAccessResult};
 
 use super::body::Body;
+use super::face_list::is_indices;
 use super::plain_triangle::PlainTriangle;
 use super::vertex::Vertices;
 use crate::huge_pages::in_huge_pages;
@@ -13,14 +14,15 @@ use crate::io::ParseError;
 use crate::io::by_corner::by_corner;
 use crate::io::polygon::triangulate;
 
-/// Triangles in the making.
+/// The triangles read so far.
 #[derive(Default)]
 pub(super) struct Triangles {
     pub(super) vertices: Vec<[u32; 3]>,
     pub(super) uvs: Vec<[Vec2; 3]>,
     pub(super) normals: Vec<[Vec3; 3]>,
     pub(super) colors: Vec<[DVec4; 3]>,
-    /// Of the face at hand: its vertices, their positions, and the corners of its triangles.
+    /// Buffers for the current face: its vertices, their positions, and the corners of its
+    /// triangles.
     corners: Vec<u32>,
     polygon: Vec<DVec3>,
     split: Vec<[usize; 3]>,
@@ -28,7 +30,7 @@ pub(super) struct Triangles {
 
 impl Triangles {
     pub(super) fn read(body: &mut Body<'_>, element: &ElementDef, vertices: &Vertices) -> Result<Self, ParseError> {
-        // A corner takes a byte at least.
+        // A corner takes at least one byte.
         let most = element.count.min(body.rest().len() / 3);
         let mut triangles = Self { vertices: in_huge_pages(Vec::with_capacity(most)), ..Self::default() };
         let mut plain = PlainTriangle::definition(element);
@@ -37,7 +39,8 @@ impl Triangles {
                 if triangles.push_plain(body, definition, part.clone(), vertices.positions.len()) {
                     continue;
                 }
-                // Where one is no triangle more will follow, and the part is read once more.
+                // More polygons are likely to follow one, so this part is read again, and the rest,
+                // as polygons.
                 plain = None;
             }
             for (number, face) in part.clone().zip(body.read_part(element, part)?) {
@@ -53,7 +56,8 @@ impl Triangles {
         Ok(triangles)
     }
 
-    /// Adds the faces of a part if all are triangles; otherwise leaves them to be read.
+    /// Adds the faces of a part if all are triangles. Otherwise leaves them unread and returns
+    /// `false`.
     fn push_plain(&mut self, body: &mut Body<'_>, plain: &ElementDef, part: Range<usize>, vertices: usize) -> bool {
         let start = self.vertices.len();
         let mut ahead = body.copy();
@@ -72,7 +76,8 @@ impl Triangles {
         true
     }
 
-    /// Adds a polygon. A list of its own counts where it is complete, the attribute of its vertices otherwise.
+    /// Adds a polygon. Attributes come from the lists of the face if these are complete, otherwise
+    /// from its vertices.
     fn push(&mut self, number: usize, face: &Face, vertices: &Vertices) -> Result<(), ParseError> {
         self.corners.clear();
         self.polygon.clear();
@@ -97,27 +102,27 @@ impl Triangles {
             _ => None,
         };
         let Self { vertices: all, split, .. } = self;
+        let polygon = Polygon { triangles: all, split, corners: self.corners.len() };
         let of_vertex = |vertex| vertices.uvs.get(vertex).copied().unwrap_or_default();
-        add_list(&mut self.uvs, all, split, &face.uvs, self.corners.len(), uv, of_vertex);
+        add_list(&mut self.uvs, &polygon, &face.uvs, uv, of_vertex);
         let of_vertex = |vertex| vertices.normals.get(vertex).copied().unwrap_or_default();
-        add_list(&mut self.normals, all, split, &face.normals, self.corners.len(), normal, of_vertex);
+        add_list(&mut self.normals, &polygon, &face.normals, normal, of_vertex);
         let of_vertex = |vertex| vertices.colors.get(vertex).copied().unwrap_or(DVec4::ONE);
-        add_list(&mut self.colors, all, split, &face.colors, self.corners.len(), color, of_vertex);
+        add_list(&mut self.colors, &polygon, &face.colors, color, of_vertex);
         Ok(())
     }
 }
 
-/// Adds the values of the last triangles, which `split` a face with a `list` of its own. No values are kept as long as no face
-/// has any.
+/// Adds the values of the last triangles, which `split` a face with the attribute `list`. Stores no
+/// values until the first face with a list.
 fn add_list<T>(
     values: &mut Vec<[T; 3]>,
-    triangles: &[[u32; 3]],
-    split: &[[usize; 3]],
+    polygon: &Polygon<'_>,
     list: &[f64],
-    corners: usize,
     make: impl Fn(&[f64]) -> Option<T>,
     of_vertex: impl Fn(usize) -> T,
 ) {
+    let Polygon { triangles, split, corners } = *polygon;
     if list.is_empty() && values.is_empty() {
         return;
     }
@@ -133,11 +138,21 @@ fn add_list<T>(
     }
 }
 
-/// A face as the library fills it.
+/// The triangles of the last face.
+struct Polygon<'a> {
+    /// All triangles so far. Those of the face are the last ones.
+    triangles: &'a [[u32; 3]],
+    /// The triangles of the face as corners of the face.
+    split: &'a [[usize; 3]],
+    /// Number of corners of the face.
+    corners: usize,
+}
+
+/// A face that the library fills property by property.
 #[derive(Default)]
 struct Face {
     indices: Vec<i32>,
-    /// The same, where the file has unsigned ones.
+    /// The indices of a file with unsigned ones.
     unsigned: Vec<u32>,
     uvs: Vec<f64>,
     normals: Vec<f64>,
@@ -153,7 +168,7 @@ impl Face {
         PropertyAccessResult::Set
     }
 
-    /// Sets a color, of which `full` is the full intensity.
+    /// Sets the colors from integers whose full intensity is `full`.
     fn set_color<T: Into<f64>>(&mut self, list: Vec<T>, full: f64) -> PropertyAccessResult {
         self.colors = list.into_iter().map(|value| value.into() / full).collect();
         PropertyAccessResult::Set
@@ -167,10 +182,6 @@ impl Face {
             _ => None,
         }
     }
-}
-
-pub(super) fn is_indices(name: &str) -> bool {
-    matches!(name, "vertex_indices" | "vertex_index")
 }
 
 impl PropertyAccess for Face {

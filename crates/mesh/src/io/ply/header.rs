@@ -8,13 +8,13 @@ use ply_rs_bw::ply::{DefaultElement, ElementDef, Header, PropertyType, ScalarTyp
 use crate::io::ParseError;
 use crate::io::text::text;
 
-/// Most characters of a line that an error shows.
+/// Largest number of characters of a line that an error shows.
 const SHOWN: usize = 80;
 
-/// The header, its bytes and its lines.
+/// Parses the header and returns it with its length in bytes and in lines.
 ///
 /// # Errors
-/// [`ParseError::Malformed`], naming the line.
+/// [`ParseError::Malformed`], which names the line.
 pub(in crate::io) fn parse_header(bytes: &[u8]) -> Result<(Header, usize, usize), ParseError> {
     let (mut length, mut lines) = (0, 0);
     for line in bytes.split_inclusive(|&byte| byte == b'\n') {
@@ -27,7 +27,7 @@ pub(in crate::io) fn parse_header(bytes: &[u8]) -> Result<(Header, usize, usize)
             return Err(malformed(bytes, 1));
         }
     }
-    // Comments may be in any encoding, but the library wants text.
+    // Comments may have any encoding, but the library requires UTF-8.
     let shown = String::from_utf8_lossy(&bytes[..length]);
     let header = Parser::<DefaultElement>::new().read_header(&mut Reader::new(shown.as_bytes()));
     match header {
@@ -48,7 +48,7 @@ fn malformed(bytes: &[u8], line: usize) -> ParseError {
     ParseError::Malformed(format!("line {line}: '{shown}' does not belong in the header of a PLY file"))
 }
 
-/// True where the element has a number of each of these meanings, under any of its names.
+/// Whether the element has a scalar property for each meaning, under any of its names.
 pub(super) fn has_numbers(element: &ElementDef, meanings: &[&[&str]]) -> bool {
     let is_number = |name: &&str| {
         let property = element.properties.get(*name);
@@ -57,10 +57,10 @@ pub(super) fn has_numbers(element: &ElementDef, meanings: &[&[&str]]) -> bool {
     meanings.iter().all(|names| names.iter().any(is_number))
 }
 
-/// Which of the properties of the vertices are their coordinates, and the types of these.
+/// Indices and types of the properties x, y and z of the vertices.
 ///
 /// # Errors
-/// [`ParseError::Malformed`] where one is missing.
+/// [`ParseError::Malformed`] if one is missing or is a list.
 pub(in crate::io) fn coordinates(vertices: &ElementDef) -> Result<[(usize, &ScalarType); 3], ParseError> {
     let find = |name: &str| match vertices.properties.get_full(name).map(|(index, _, found)| (index, &found.data_type))
     {
@@ -70,7 +70,8 @@ pub(in crate::io) fn coordinates(vertices: &ElementDef) -> Result<[(usize, &Scal
     Ok([find("x")?, find("y")?, find("z")?])
 }
 
-/// Bytes of the first `properties` of an element in binary data; none where there is a list among them.
+/// Size in bytes of the first `properties` of an element in binary data. `None` if one of them is a
+/// list.
 pub(in crate::io) fn record_size(element: &ElementDef, properties: usize) -> Option<usize> {
     let size = |kind: &PropertyType| match kind {
         PropertyType::Scalar(scalar) => Some(scalar_size(scalar)),
@@ -79,7 +80,7 @@ pub(in crate::io) fn record_size(element: &ElementDef, properties: usize) -> Opt
     element.properties.values().take(properties).map(|property| size(&property.data_type)).sum()
 }
 
-/// Bytes of a number.
+/// Size of a number in bytes.
 pub(in crate::io) fn scalar_size(scalar: &ScalarType) -> usize {
     match scalar {
         ScalarType::Char | ScalarType::UChar => 1,

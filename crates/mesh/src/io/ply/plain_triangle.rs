@@ -1,30 +1,32 @@
-//! Faces that are nothing but triangles, as most are.
+//! A fast path for faces that are all triangles.
 
 use ply_rs_bw::ply::{
     Addable, ElementDef, PropertyAccess, PropertyAccessResult, PropertyDef, PropertyType, ScalarType,
 };
 
-use super::face::is_indices;
+use super::face_list::is_indices;
 
-/// Names of a list's length and its first three values. No header has such ones, for want of quotes around spaces.
+/// Names for the length and the first three values of a list. They cannot occur in a header,
+/// because names there have no spaces.
 const NAMES: [&str; 4] = ["list length", "list value 0", "list value 1", "list value 2"];
 
-/// A face whose list of vertices is read as the four numbers that it is if they are three. The library allocates memory for
-/// every list, which takes longer than to read it.
+/// A face whose vertex list is read as four scalars: the length and three indices. The library
+/// allocates memory for every list, which takes longer than reading it.
 pub(super) struct PlainTriangle {
     length: i64,
     corners: [i64; 3],
 }
 
 impl PlainTriangle {
-    /// Faces with such numbers in place of their list; none where they have other lists or no whole numbers.
+    /// The element definition with four scalars instead of the vertex list. `None` if the faces
+    /// have other lists, or if the list is not of integers.
     pub(super) fn definition(faces: &ElementDef) -> Option<ElementDef> {
         let mut plain = ElementDef::new(faces.name.clone());
         for property in faces.properties.values() {
             match &property.data_type {
                 PropertyType::Scalar(_) => plain.properties.add(property.clone()),
                 PropertyType::List(length, value)
-                    if is_indices(&property.name) && is_whole(length) && is_whole(value) =>
+                    if is_indices(&property.name) && is_integer(length) && is_integer(value) =>
                 {
                     for (name, kind) in NAMES.into_iter().zip([length, value, value, value]) {
                         plain.properties.add(PropertyDef::new(name.to_owned(), PropertyType::Scalar(kind.clone())));
@@ -33,12 +35,12 @@ impl PlainTriangle {
                 PropertyType::List(..) => return None,
             }
         }
-        // Two lists under different names would be taken for one.
+        // Two lists under different names would overwrite each other's values.
         let lists = faces.properties.len() + NAMES.len() - plain.properties.len();
         (lists == 1).then_some(plain)
     }
 
-    /// The vertices, each below `vertices`; none where it is no triangle of them.
+    /// The vertices, or `None` if the face is not a triangle or an index is not below `vertices`.
     pub(super) fn corners(&self, vertices: usize) -> Option<[u32; 3]> {
         let is_vertex = |&corner: &i64| corner >= 0 && (corner as u64) < vertices as u64;
         (self.length == 3 && self.corners.iter().all(is_vertex)).then(|| self.corners.map(|corner| corner as u32))
@@ -55,7 +57,7 @@ impl PlainTriangle {
     }
 }
 
-fn is_whole(kind: &ScalarType) -> bool {
+fn is_integer(kind: &ScalarType) -> bool {
     !matches!(kind, ScalarType::Float | ScalarType::Double)
 }
 

@@ -9,13 +9,13 @@ use super::vertex::Vertices;
 use crate::io::ParseError;
 use crate::{CornerAttributes, TriMesh, VertexAttributes};
 
-/// Reads PLY of any encoding. Elements other than vertices and faces are passed over.
+/// Reads PLY of any encoding. Elements other than vertices and faces are skipped.
 pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let (header, length, lines) = parse_header(bytes)?;
     let mut body = Body::new(&header, &bytes[length..], lines);
     let (mut vertices, mut faces) = (None, None);
-    for (place, element) in header.elements.values().enumerate() {
-        // Without properties there is nothing to read, however many are announced.
+    for (index, element) in header.elements.values().enumerate() {
+        // An element without properties has no data, however many are announced.
         if element.properties.is_empty() {
             continue;
         }
@@ -23,8 +23,9 @@ pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
             "vertex" => vertices = Some(Vertices::read(&mut body, element)?),
             "face" => {
                 faces = Some((body.copy(), element));
-                // Read at the end, because they may come before the vertices that they need.
-                if vertices.is_none() || place + 1 < header.elements.len() {
+                // Faces may come before the vertices that they need, so they are skipped here and
+                // read last.
+                if vertices.is_none() || index + 1 < header.elements.len() {
                     body.read(element, |_, Ignored| Ok(()))?;
                 }
             }
@@ -47,7 +48,7 @@ pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     Ok(mesh.welded_at_boundary())
 }
 
-/// An element that is read past.
+/// An element that is skipped.
 struct Ignored;
 
 impl PropertyAccess for Ignored {

@@ -9,7 +9,7 @@ use super::header::{coordinates, has_numbers};
 use crate::huge_pages::in_huge_pages;
 use crate::io::ParseError;
 
-/// Vertices by attribute; an attribute that the file does not have is empty.
+/// Vertices by attribute. An attribute that the file lacks is empty.
 #[derive(Default)]
 pub(super) struct Vertices {
     pub(super) positions: Vec<DVec3>,
@@ -26,7 +26,7 @@ impl Vertices {
         let reds = ["red", "r", "diffuse_red"];
         let has_colors =
             has_numbers(element, &[&reds, &["green", "g", "diffuse_green"], &["blue", "b", "diffuse_blue"]]);
-        // A coordinate takes a byte at least.
+        // A coordinate takes at least one byte.
         let most = element.count.min(body.rest().len() / 3);
         let mut vertices = Self { positions: in_huge_pages(Vec::with_capacity(most)), ..Self::default() };
         body.read(element, |_, vertex: Vertex| {
@@ -49,10 +49,10 @@ impl Vertices {
     }
 }
 
-/// Adds the positions of all vertices in `bytes`, and nothing else is in them.
+/// Appends the positions of all vertices in `bytes`, which must contain nothing else.
 ///
 /// # Errors
-/// The number of the vertex at fault, counted from zero, and what is wrong with it.
+/// The index of the invalid vertex, counted from zero, and its defect.
 pub(in crate::io) fn read_points(
     header: &Header,
     element: &ElementDef,
@@ -72,7 +72,7 @@ pub(in crate::io) fn read_points(
     }
 }
 
-/// A vertex as the library fills it.
+/// A vertex that the library fills property by property.
 struct Vertex {
     position: DVec3,
     normal: DVec3,
@@ -81,7 +81,7 @@ struct Vertex {
 }
 
 impl Vertex {
-    /// Sets a property; `full` is what stands for full intensity in colors of its type.
+    /// Sets a property; `full` is the full intensity of colors of its type.
     fn set(&mut self, name: &str, value: f64, full: f64) -> PropertyAccessResult {
         let (target, value) = match name {
             "x" => (&mut self.position.x, value),

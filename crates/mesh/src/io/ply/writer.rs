@@ -2,88 +2,122 @@
 
 use std::io::{self, Write};
 
-use glam::DVec4;
+use glam::{DVec4, Vec2, Vec3};
 
 use crate::TriMesh;
 use crate::io::text::{FLUSH_AT, flush};
 
-/// Writes binary little-endian PLY with doubles, and normals and texture coordinates in floats, as meshes have them. Colors are bytes
-/// where bytes say the same, else floats.
+/// Writes binary little-endian PLY with positions as doubles, and normals and texture coordinates
+/// as floats. Colors are bytes if that is exact, otherwise floats, otherwise doubles.
 ///
-/// Of several UV sets the first is written; skin, materials and textures have no place in the format.
+/// Only the first UV set is written. The format cannot store skin, materials and textures.
 pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result<()> {
-    let uvs = mesh.corner.uvs.first().map_or([].as_slice(), Vec::as_slice);
-    let normals = &mesh.corner.normals;
-    let corner_colors = &mesh.corner.colors;
-    let vertex_uvs = by_vertex(mesh, uvs);
-    let vertex_normals = by_vertex(mesh, normals);
-    let vertex_color_depth = Depth::of(mesh.vertex.colors.iter());
-    let corner_color_depth = Depth::of(corner_colors.iter().flatten());
-
-    let mut header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.len());
-    header.push_str("property double x\nproperty double y\nproperty double z\n");
-    if vertex_normals.is_some() {
-        header.push_str("property float nx\nproperty float ny\nproperty float nz\n");
+    let records = Records::of(mesh);
+    writer.write_all(records.header().as_bytes())?;
+    let mut bytes = Vec::with_capacity(FLUSH_AT + 1024);
+    for vertex in 0..mesh.positions.len() {
+        records.push_vertex(vertex, &mut bytes);
+        flush(&mut bytes, writer, FLUSH_AT)?;
     }
-    if vertex_uvs.is_some() {
-        header.push_str("property float s\nproperty float t\n");
+    for triangle in 0..mesh.triangles.len() {
+        records.push_face(triangle, &mut bytes);
+        flush(&mut bytes, writer, FLUSH_AT)?;
     }
-    if !mesh.vertex.colors.is_empty() {
-        for name in ["red", "green", "blue", "alpha"] {
-            header.push_str(&format!("property {} {name}\n", vertex_color_depth.name()));
-        }
-    }
-    header.push_str(&format!("element face {}\n", mesh.triangles.len()));
-    header.push_str("property list uchar uint vertex_indices\n");
-    let has_uv_lists = vertex_uvs.is_none() && !uvs.is_empty();
-    if has_uv_lists {
-        header.push_str("property list uchar float texcoord\n");
-    }
-    let has_normal_lists = vertex_normals.is_none() && !normals.is_empty();
-    if has_normal_lists {
-        header.push_str("property list uchar float normal\n");
-    }
-    if !corner_colors.is_empty() {
-        header.push_str(&format!("property list uchar {} color\n", corner_color_depth.name()));
-    }
-    header.push_str("end_header\n");
-    writer.write_all(header.as_bytes())?;
-
-    let mut records = Vec::with_capacity(FLUSH_AT + 1024);
-    for (vertex, position) in mesh.positions.iter().enumerate() {
-        push_doubles(&mut records, position.to_array());
-        if let Some(normals) = &vertex_normals {
-            push_singles(&mut records, normals[vertex].to_array());
-        }
-        if let Some(uvs) = &vertex_uvs {
-            push_singles(&mut records, uvs[vertex].to_array());
-        }
-        if let Some(&color) = mesh.vertex.colors.get(vertex) {
-            vertex_color_depth.push(&mut records, color);
-        }
-        flush(&mut records, writer, FLUSH_AT)?;
-    }
-    for (triangle, vertices) in mesh.triangles.iter().enumerate() {
-        records.push(3);
-        vertices.iter().for_each(|vertex| records.extend_from_slice(&vertex.to_le_bytes()));
-        if has_uv_lists {
-            records.push(6);
-            uvs[triangle].iter().for_each(|uv| push_singles(&mut records, uv.to_array()));
-        }
-        if has_normal_lists {
-            records.push(9);
-            normals[triangle].iter().for_each(|normal| push_singles(&mut records, normal.to_array()));
-        }
-        if let Some(colors) = corner_colors.get(triangle) {
-            records.push(12);
-            colors.iter().for_each(|&color| corner_color_depth.push(&mut records, color));
-        }
-        flush(&mut records, writer, FLUSH_AT)?;
-    }
-    flush(&mut records, writer, 0)
+    flush(&mut bytes, writer, 0)
 }
 
-/// Values by vertex where all corners at each vertex agree; none where there are no values.
+/// The records of vertices and faces, with the element that stores each attribute.
+struct Records<'a> {
+    mesh: &'a TriMesh,
+    /// Attributes of the vertices, if all corners at each vertex agree.
+    vertex_uvs: Option<Vec<Vec2>>,
+    vertex_normals: Option<Vec<Vec3>>,
+    /// Attributes of the corners otherwise, as lists of the faces.
+    uv_lists: &'a [[Vec2; 3]],
+    normal_lists: &'a [[Vec3; 3]],
+    vertex_color_depth: Depth,
+    corner_color_depth: Depth,
+}
+
+impl<'a> Records<'a> {
+    fn of(mesh: &'a TriMesh) -> Self {
+        let uvs = mesh.corner.uvs.first().map_or([].as_slice(), Vec::as_slice);
+        let vertex_uvs = by_vertex(mesh, uvs);
+        let vertex_normals = by_vertex(mesh, &mesh.corner.normals);
+        Self {
+            mesh,
+            uv_lists: if vertex_uvs.is_none() { uvs } else { &[] },
+            normal_lists: if vertex_normals.is_none() { &mesh.corner.normals } else { &[] },
+            vertex_uvs,
+            vertex_normals,
+            vertex_color_depth: Depth::of(mesh.vertex.colors.iter()),
+            corner_color_depth: Depth::of(mesh.corner.colors.iter().flatten()),
+        }
+    }
+
+    fn header(&self) -> String {
+        let mesh = self.mesh;
+        let mut header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.len());
+        header.push_str("property double x\nproperty double y\nproperty double z\n");
+        if self.vertex_normals.is_some() {
+            header.push_str("property float nx\nproperty float ny\nproperty float nz\n");
+        }
+        if self.vertex_uvs.is_some() {
+            header.push_str("property float s\nproperty float t\n");
+        }
+        if !mesh.vertex.colors.is_empty() {
+            for name in ["red", "green", "blue", "alpha"] {
+                header.push_str(&format!("property {} {name}\n", self.vertex_color_depth.name()));
+            }
+        }
+        header.push_str(&format!("element face {}\n", mesh.triangles.len()));
+        header.push_str("property list uchar uint vertex_indices\n");
+        if !self.uv_lists.is_empty() {
+            header.push_str("property list uchar float texcoord\n");
+        }
+        if !self.normal_lists.is_empty() {
+            header.push_str("property list uchar float normal\n");
+        }
+        if !mesh.corner.colors.is_empty() {
+            header.push_str(&format!("property list uchar {} color\n", self.corner_color_depth.name()));
+        }
+        header.push_str("end_header\n");
+        header
+    }
+
+    fn push_vertex(&self, vertex: usize, bytes: &mut Vec<u8>) {
+        push_doubles(bytes, self.mesh.positions[vertex].to_array());
+        if let Some(normals) = &self.vertex_normals {
+            push_singles(bytes, normals[vertex].to_array());
+        }
+        if let Some(uvs) = &self.vertex_uvs {
+            push_singles(bytes, uvs[vertex].to_array());
+        }
+        if let Some(&color) = self.mesh.vertex.colors.get(vertex) {
+            self.vertex_color_depth.push(bytes, color);
+        }
+    }
+
+    /// Each list begins with its length.
+    fn push_face(&self, triangle: usize, bytes: &mut Vec<u8>) {
+        bytes.push(3);
+        self.mesh.triangles[triangle].iter().for_each(|vertex| bytes.extend_from_slice(&vertex.to_le_bytes()));
+        if let Some(uvs) = self.uv_lists.get(triangle) {
+            bytes.push(6);
+            uvs.iter().for_each(|uv| push_singles(bytes, uv.to_array()));
+        }
+        if let Some(normals) = self.normal_lists.get(triangle) {
+            bytes.push(9);
+            normals.iter().for_each(|normal| push_singles(bytes, normal.to_array()));
+        }
+        if let Some(colors) = self.mesh.corner.colors.get(triangle) {
+            bytes.push(12);
+            colors.iter().for_each(|&color| self.corner_color_depth.push(bytes, color));
+        }
+    }
+}
+
+/// Values by vertex. `None` if two corners at a vertex differ, or if there are no values.
 fn by_vertex<T: Copy + Default + PartialEq>(mesh: &TriMesh, corners: &[[T; 3]]) -> Option<Vec<T>> {
     if corners.is_empty() {
         return None;
@@ -107,7 +141,7 @@ fn push_singles(records: &mut Vec<u8>, numbers: impl IntoIterator<Item = f32>) {
     numbers.into_iter().for_each(|number| records.extend_from_slice(&number.to_le_bytes()));
 }
 
-/// How colors are written.
+/// Number type of written colors.
 #[derive(Clone, Copy, PartialEq)]
 enum Depth {
     Byte,
@@ -116,7 +150,7 @@ enum Depth {
 }
 
 impl Depth {
-    /// The smallest that loses nothing.
+    /// The smallest type that represents all colors exactly.
     fn of<'a>(colors: impl Iterator<Item = &'a DVec4>) -> Self {
         let depth_of = |value: f64| match value {
             _ if (0.0..=1.0).contains(&value) && f64::from(byte(value)) / 255.0 == value => Self::Byte,

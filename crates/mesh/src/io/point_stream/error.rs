@@ -1,15 +1,15 @@
-//! What may go wrong while points are streamed.
+//! Errors of streaming points.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::io::ParseError;
 
-/// Why points could not be read or written.
+/// Errors when reading or writing points.
 #[derive(Debug, thiserror::Error)]
 pub enum PointStreamError {
-    /// The extension is none of a format that is read chunk by chunk.
-    #[error("{}: points are streamed from .ply and .npy alone", path.display())]
+    /// The extension does not belong to a format that can be streamed.
+    #[error("{}: points can be streamed only from .ply and .npy files", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -19,41 +19,41 @@ pub enum PointStreamError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
-    /// The header is broken, or announces what cannot be streamed.
+    /// The header is invalid, or announces data that cannot be streamed.
     #[error("{}: {source}", path.display())]
     Header {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The defect of the header.
         source: Box<ParseError>,
     },
-    /// There are fewer points than announced.
-    #[error("{}: the file is truncated: {announced} points announced, but it ends at {place}", path.display())]
+    /// The file has fewer points than its header announces.
+    #[error("{}: the file is truncated: {announced} points announced, but it ends at {end}", path.display())]
     Truncated {
         /// The file.
         path: PathBuf,
         /// Number of points that the header announces.
         announced: u64,
-        /// The byte or line, counted from zero, at which there should be more.
-        place: String,
+        /// The byte or line, counted from zero, at which the file ends.
+        end: String,
     },
-    /// A point that is none.
-    #[error("{}: point {point} {place}: {problem}", path.display())]
+    /// A point is invalid.
+    #[error("{}: point {point} {location}: {problem}", path.display())]
     Point {
         /// The file.
         path: PathBuf,
         /// The point, counted from zero.
         point: u64,
         /// The byte or line at which it begins.
-        place: String,
-        /// What is wrong with it.
+        location: String,
+        /// The defect of the point.
         problem: String,
     },
-    /// A point left the range of the type that the file has for it.
-    #[error("{}: point {point} is moved beyond what the type of the file's numbers holds", path.display())]
+    /// A point exceeds the range of the number type of the file.
+    #[error("{}: point {point} moved beyond the range of the number type of the file", path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -66,7 +66,7 @@ pub enum PointStreamError {
 }
 
 impl PointStreamError {
-    /// The file that was read, where the error is about it.
+    /// The input file, or `None` for an error of the output.
     pub fn path(&self) -> Option<&PathBuf> {
         match self {
             Self::UnknownFormat { path }

@@ -1,4 +1,4 @@
-//! Where the points are in a file.
+//! The layout of the points in a file.
 
 use std::io::BufRead;
 use std::path::Path;
@@ -8,29 +8,29 @@ use ply_rs_bw::ply::{Addable, ElementDef, Encoding, Header, PropertyDef, Propert
 use super::{PointStreamError, read_header};
 use crate::io::ply::{coordinates, parse_header, record_size, scalar_size};
 
-/// Most bytes of a header. Larger, and a file that is something else altogether takes memory before it is refused; smaller, and
-/// long comments are.
+/// Largest number of bytes in a header. A larger value wastes memory on files that are not of the
+/// format; a smaller one refuses files with long comments.
 const MAX_HEADER: usize = 1 << 20;
 
-/// Where the points are, by what the header says.
+/// The layout of the points as announced by the header.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// The header as it stands in the file.
+    /// The bytes of the header.
     pub(super) header: Vec<u8>,
     pub(super) count: u64,
     pub(super) kind: Kind,
-    /// The header of PLY, and its vertices. A NumPy array is as good as the data of such a file.
+    /// The header of a PLY file and its vertices. A NumPy array is read as the data of such a file.
     pub(super) ply: Header,
     pub(super) vertices: ElementDef,
     pub(super) number: ScalarType,
 }
 
-/// How the points are written.
+/// The encoding of the points.
 #[derive(Debug)]
 pub(super) enum Kind {
-    /// In records of `size` bytes, after as many others.
+    /// Records of `size` bytes with coordinates at `offsets`, after `bytes_before` other bytes.
     Binary { bytes_before: u64, size: usize, offsets: [usize; 3] },
-    /// In lines, as the words of these numbers, after as many others.
+    /// Lines with coordinates in the words `columns`, after `lines_before` other lines of data.
     Text { lines: u64, lines_before: u64, columns: [usize; 3] },
 }
 
@@ -59,10 +59,10 @@ impl Layout {
         if coordinates.iter().any(|&(_, other)| *other != number)
             || !matches!(number, ScalarType::Float | ScalarType::Double)
         {
-            return Err(unfit("x, y and z must be of one type, float or double, to be written over"));
+            return Err(unfit("x, y and z must have the same type, float or double, to be overwritten"));
         }
         let lists =
-            || unfit("the file has lists before or among its vertices, which cannot be passed over in bounded memory");
+            || unfit("the file has lists before or among its vertices, which cannot be skipped in bounded memory");
         let kind = if ply.encoding == Encoding::Ascii {
             let offsets = columns.map(|column| record_size(&vertices, column));
             if offsets.contains(&None) {
@@ -84,12 +84,13 @@ impl Layout {
     fn of_npy(path: &Path, input: &mut impl BufRead) -> Result<Self, PointStreamError> {
         let unfit = |problem: String| PointStreamError::header(path, problem);
         let failed = |source| PointStreamError::read(path, source);
-        // Six letters, two numbers of the version, and the length of the rest in two bytes or, from version 2 on, in four.
+        // Six letters, two version numbers, and the length of the rest: two bytes, or four from
+        // version 2 on.
         let mut header = vec![0; 8];
         let truncated = |_| unfit("the file is truncated in its header".into());
         input.read_exact(&mut header).map_err(truncated)?;
         if !header.starts_with(b"\x93NUMPY") {
-            return Err(unfit("this is no NumPy array".into()));
+            return Err(unfit("this is not a NumPy array".into()));
         }
         let length_size = if header[6] == 1 { 2 } else { 4 };
         header.resize(8 + length_size, 0);
@@ -106,7 +107,7 @@ impl Layout {
             ">f4" => (ScalarType::Float, Encoding::BinaryBigEndian),
             "<f8" => (ScalarType::Double, Encoding::BinaryLittleEndian),
             ">f8" => (ScalarType::Double, Encoding::BinaryBigEndian),
-            other => return Err(unfit(format!("numbers of type {other} are no points; give f4 or f8"))),
+            other => return Err(unfit(format!("the number type {other} is not supported; use f4 or f8"))),
         };
         let &[count, 3] = parsed.shape() else {
             return Err(unfit(format!("the array has the shape {:?}; points need (N, 3)", parsed.shape())));
@@ -127,7 +128,7 @@ impl Layout {
         self.number == ScalarType::Float
     }
 
-    /// Bytes, of text lines, of the header.
+    /// Length of the header in bytes, or in lines of a text file.
     pub(super) fn start(&self) -> u64 {
         match self.kind {
             Kind::Binary { .. } => self.header.len() as u64,
@@ -135,7 +136,7 @@ impl Layout {
         }
     }
 
-    /// The byte at which the first point of a binary file begins.
+    /// Byte at which the first point begins, or its line in a text file.
     pub(super) fn first_point(&self) -> u64 {
         match self.kind {
             Kind::Binary { bytes_before, .. } => self.start() + bytes_before,

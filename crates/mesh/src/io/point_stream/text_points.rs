@@ -4,16 +4,16 @@ use glam::DVec3;
 
 use crate::io::text::Words;
 
-/// Writes `line` with the numbers in these `columns` replaced, and everything else as it stands.
+/// Writes `line` with the numbers in `columns` replaced and the rest unchanged.
 ///
-/// Numbers are the shortest decimals that read back as the same number, of single or double precision. One that is the same as
-/// before keeps its digits.
+/// Numbers are the shortest decimals that read back as the same number, in single or double
+/// precision. An unchanged number keeps its digits.
 pub(super) fn write_point(line: &[u8], columns: [usize; 3], point: DVec3, is_single: bool, out: &mut Vec<u8>) {
     let mut words = Words { rest: line };
     let mut written = 0;
     let mut column = 0;
     while let Some(word) = words.next() {
-        if let Some(axis) = columns.iter().position(|&wanted| wanted == column) {
+        if let Some(axis) = columns.iter().position(|&of_axis| of_axis == column) {
             let end = line.len() - words.rest.len();
             out.extend_from_slice(&line[written..end - word.len()]);
             written = end;
