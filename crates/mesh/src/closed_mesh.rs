@@ -1,4 +1,4 @@
-//! Proof that a mesh encloses a volume.
+//! A mesh that is checked to be closed.
 
 use std::ops::Deref;
 
@@ -7,33 +7,43 @@ use glam::DVec3;
 use crate::check::start;
 use crate::{Topology, TriMesh};
 
-/// A mesh that was found closed: indices in range, positions finite, every edge between exactly two triangles that run
-/// along it in opposite directions.
+/// A mesh that is proven to be closed: all indices are in range, all positions are finite, and
+/// every edge belongs to exactly two triangles that traverse it in opposite directions.
 ///
-/// It may still touch or intersect itself, hold triangles of no area, or be turned inside out; the sign of its
-/// [`volume`](TriMesh::volume) tells the last.
+/// It may still touch or intersect itself, contain triangles of zero area, or be inside out, in
+/// which case its [`volume`](TriMesh::volume) is negative.
+///
+/// ```
+/// use isochore_mesh::{ClosedMesh, MeshError, primitives};
+///
+/// let mut mesh = primitives::icosphere(1.0, 0);
+/// assert!(ClosedMesh::new(&mesh)?.volume() > 0.0);
+/// mesh.triangles.pop();
+/// assert!(matches!(ClosedMesh::new(&mesh), Err(MeshError::Open { .. })));
+/// # Ok::<(), MeshError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct ClosedMesh<'a> {
     mesh: &'a TriMesh,
 }
 
 impl<'a> ClosedMesh<'a> {
-    /// Checks `mesh`.
+    /// Checks that `mesh` is closed.
     ///
     /// # Errors
-    /// The first defect found, by element.
+    /// [`MeshError`] for the first defect found, which names the element.
     pub fn new(mesh: &'a TriMesh) -> Result<Self, MeshError> {
         Self::check_elements(mesh)?;
         Self::check_edges(mesh, &Topology::of(mesh))
     }
 
-    /// Checks `mesh`, whose edges are known already.
+    /// Checks that `mesh` is closed, given its topology.
     ///
     /// # Errors
-    /// The first defect found, by element.
+    /// [`MeshError`] for the first defect found, which names the element.
     ///
     /// # Panics
-    /// May panic if the topology is that of another mesh.
+    /// Possibly, if the topology belongs to another mesh.
     pub fn with_topology(mesh: &'a TriMesh, topology: &Topology) -> Result<Self, MeshError> {
         Self::check_elements(mesh)?;
         Self::check_edges(mesh, topology)
@@ -63,7 +73,7 @@ impl<'a> ClosedMesh<'a> {
         Ok(Self { mesh })
     }
 
-    /// The mesh itself, for as long as it was borrowed.
+    /// The mesh, for the whole lifetime of the borrow.
     pub fn mesh(self) -> &'a TriMesh {
         self.mesh
     }
@@ -78,10 +88,11 @@ impl Deref for ClosedMesh<'_> {
 }
 
 impl TriMesh {
-    /// Checks that indices are in range and positions finite.
+    /// Checks that all indices are in range and all positions finite.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] or [`MeshError::NonFinite`] for the first triangle or vertex where they are not.
+    /// [`MeshError::IndexOutOfRange`] for the first such triangle, else [`MeshError::NonFinite`]
+    /// for the first such vertex.
     pub fn check_valid(&self) -> Result<(), MeshError> {
         let vertices = self.positions.len();
         for (triangle, corners) in self.triangles.iter().enumerate() {
@@ -96,31 +107,31 @@ impl TriMesh {
     }
 }
 
-/// Why a mesh does not enclose a volume. Elements are numbered from zero.
+/// Defects because of which a mesh does not enclose a volume. Elements are numbered from zero.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeshError {
-    /// There is no triangle.
+    /// The mesh has no triangles.
     #[error("the mesh has no triangles")]
     Empty,
-    /// A triangle names a vertex that does not exist.
+    /// A vertex index of a triangle is out of range.
     #[error("triangle {triangle} names vertex {index}, but the mesh has {vertices} vertices")]
     IndexOutOfRange {
         /// The triangle.
         triangle: u32,
-        /// The index that is too large.
+        /// The index.
         index: u32,
         /// Number of vertices.
         vertices: usize,
     },
-    /// A coordinate is infinite or not a number.
+    /// A coordinate is infinite or NaN.
     #[error("vertex {vertex} is at {position}, which is not a finite position")]
     NonFinite {
         /// The vertex.
         vertex: u32,
-        /// Where it is said to be.
+        /// Its position.
         position: DVec3,
     },
-    /// A triangle names a vertex twice.
+    /// A triangle uses a vertex twice.
     #[error("triangle {triangle} names vertex {vertex} twice")]
     RepeatedVertex {
         /// The triangle.
@@ -129,14 +140,14 @@ pub enum MeshError {
         vertex: u32,
     },
     /// The surface has a boundary.
-    #[error("the mesh is open: the edge between vertices {} and {} belongs to triangle {triangle} alone", edge[0], edge[1])]
+    #[error("the mesh is open: the edge between vertices {} and {} belongs only to triangle {triangle}", edge[0], edge[1])]
     Open {
         /// An edge of the boundary.
         edge: [u32; 2],
         /// Its only triangle.
         triangle: u32,
     },
-    /// More than two triangles meet in an edge.
+    /// An edge has more than two triangles.
     #[error("the edge between vertices {} and {} belongs to {triangles} triangles, not two", edge[0], edge[1])]
     NonManifoldEdge {
         /// The edge.
@@ -144,9 +155,9 @@ pub enum MeshError {
         /// Number of its triangles.
         triangles: usize,
     },
-    /// Neighbors disagree on which side is outside.
+    /// Two neighboring triangles have opposite orientations.
     #[error(
-        "triangles {} and {} run along the edge between vertices {} and {} in the same direction: one of them is turned over",
+        "triangles {} and {} traverse the edge between vertices {} and {} in the same direction: one of them is reversed",
         triangles[0], triangles[1], edge[0], edge[1]
     )]
     Misoriented {

@@ -1,9 +1,11 @@
-//! The topology of a surface that is edited in place: splits, collapses and flips of edges, each in local time.
+//! The topology of a surface that is edited in place by splits, collapses and flips of edges, each
+//! in local time.
 //!
-//! A corner table (J. Rossignac, *Edgebreaker*, 1999, calls it so): half-edge `3 t + k` runs from vertex `k` of triangle `t` to
-//! vertex `k + 1` (modulo three) and knows its twin on the other side. A vertex knows one half-edge that leaves it. What is removed
-//! leaves a hole, and what is new is appended, or takes the place of what was removed before edits began to be recorded. Vertices that
-//! there were at first keep their places for good.
+//! The data structure is a corner table (J. Rossignac, *Edgebreaker*, 1999). Half-edge `3 t + k`
+//! runs from vertex `k` of triangle `t` to vertex `k + 1` (modulo three) and stores its twin on the
+//! other side. A vertex stores one outgoing half-edge. Removed elements leave free slots. New
+//! elements are appended, or reuse slots that were freed before recording began. The slots of the
+//! original vertices are never reused.
 
 mod collapse;
 mod fan;
@@ -21,48 +23,65 @@ pub use split::Split;
 /// No half-edge, or no vertex.
 pub const NONE: u32 = u32::MAX;
 
-/// An oriented surface without branches, closed or with boundaries, whose edits can be recorded and undone.
+/// An oriented manifold surface, closed or with boundaries, whose edits can be recorded and undone.
+///
+/// ```
+/// use isochore_mesh::{EditMesh, primitives};
+///
+/// let ball = primitives::icosphere(1.0, 1);
+/// let mut mesh = EditMesh::new(&ball.triangles, ball.positions.len())?;
+/// let alive = mesh.begin();
+/// let split = mesh.split(mesh.outgoing(0));
+/// assert_eq!(mesh.neighbors(split.vertex).count(), 4);
+/// let mut delta = mesh.finish(alive);
+/// assert_eq!(mesh.alive(), 82);
+/// mesh.swap(&mut delta);
+/// assert_eq!(mesh.alive(), 80);
+/// # Ok::<(), isochore_mesh::EditMeshError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct EditMesh {
     triangles: Journaled<EditTriangle>,
-    /// By vertex a half-edge that leaves it: at the boundary the one without a twin. [`NONE`] for a vertex without triangles.
-    leaving: Journaled<u32>,
+    /// For each vertex an outgoing half-edge, at the boundary the one without a twin. [`NONE`] for
+    /// a vertex without triangles.
+    outgoing: Journaled<u32>,
     alive: usize,
     free_triangles: FreeSlots,
     free_vertices: FreeSlots,
 }
 
-/// A triangle and what lies beyond its edges.
+/// A triangle and the twins of its half-edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EditTriangle {
-    /// Counter-clockwise seen from outside; all [`NONE`] where the triangle was removed.
+    /// Counter-clockwise seen from outside. All are [`NONE`] if the triangle is removed.
     pub vertices: [u32; 3],
-    /// The half-edges on the other sides of edges 01, 12 and 20; [`NONE`] at the boundary.
+    /// The half-edges on the other side of edges 01, 12 and 20. [`NONE`] at the boundary.
     pub twins: [u32; 3],
 }
 
 impl EditTriangle {
     const REMOVED: Self = Self { vertices: [NONE; 3], twins: [NONE; 3] };
 
-    /// Whether the triangle is there.
+    /// Whether the triangle exists, that is, has not been removed.
     pub fn is_alive(&self) -> bool {
         self.vertices[0] != NONE
     }
 }
 
-/// The way to the other end of recorded edits of an [`EditMesh`].
+/// The difference between the states of an [`EditMesh`] before and after recorded edits, for undo
+/// and redo.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EditDelta {
     /// The triangles.
     pub triangles: Delta<EditTriangle>,
-    leaving: Delta<u32>,
+    outgoing: Delta<u32>,
     alive: usize,
 }
 
-/// Why triangles are no surface that could be edited. Elements are numbered from zero.
+/// Errors when constructing an [`EditMesh`]. Elements are numbered from zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum EditMeshError {
-    /// A triangle names a vertex twice.
+    /// A triangle uses a vertex twice.
     #[error("triangle {triangle} names vertex {vertex} twice")]
     RepeatedVertex {
         /// The triangle.
@@ -70,7 +89,7 @@ pub enum EditMeshError {
         /// The vertex.
         vertex: u32,
     },
-    /// More than two triangles meet in an edge.
+    /// An edge has more than two triangles.
     #[error("the edge between vertices {} and {} belongs to {triangles} triangles", edge[0], edge[1])]
     NonManifoldEdge {
         /// The edge.
@@ -78,15 +97,15 @@ pub enum EditMeshError {
         /// Number of its triangles.
         triangles: usize,
     },
-    /// Neighbors disagree on which side is outside.
-    #[error("triangles {} and {} run along the edge between vertices {} and {} in the same direction", triangles[0], triangles[1], edge[0], edge[1])]
+    /// Two neighboring triangles have opposite orientations.
+    #[error("triangles {} and {} traverse the edge between vertices {} and {} in the same direction", triangles[0], triangles[1], edge[0], edge[1])]
     Misoriented {
         /// The edge.
         edge: [u32; 2],
         /// Its triangles.
         triangles: [u32; 2],
     },
-    /// Two sheets touch in a vertex.
+    /// Two sheets touch at a vertex.
     #[error("the triangles at vertex {vertex} form more than one fan")]
     NonManifoldVertex {
         /// The vertex.
@@ -100,7 +119,7 @@ pub fn next(half_edge: u32) -> u32 {
     if half_edge % 3 == 2 { half_edge - 2 } else { half_edge + 1 }
 }
 
-/// The half-edge before, around the triangle.
+/// The previous half-edge around the triangle.
 #[inline]
 pub fn previous(half_edge: u32) -> u32 {
     if half_edge.is_multiple_of(3) { half_edge + 2 } else { half_edge - 1 }
@@ -110,7 +129,8 @@ impl EditMesh {
     /// The surface of `triangles` over `vertices` vertices.
     ///
     /// # Errors
-    /// [`EditMeshError`], naming the first edge or vertex where it is no oriented surface.
+    /// [`EditMeshError`] if it is not an oriented manifold surface. The error names the first
+    /// faulty triangle, edge or vertex.
     ///
     /// # Panics
     /// If an index is out of range.
@@ -138,21 +158,21 @@ impl EditMesh {
                 ref around => return Err(EditMeshError::NonManifoldEdge { edge: ends, triangles: around.len() }),
             }
         }
-        let mut leaving = vec![NONE; vertices];
+        let mut outgoing = vec![NONE; vertices];
         let mut corners = vec![0_u32; vertices];
         for (index, record) in records.iter().enumerate() {
             for side in 0..3 {
                 let vertex = record.vertices[side] as usize;
                 corners[vertex] += 1;
-                if leaving[vertex] == NONE || record.twins[side] == NONE {
-                    leaving[vertex] = (3 * index + side) as u32;
+                if outgoing[vertex] == NONE || record.twins[side] == NONE {
+                    outgoing[vertex] = (3 * index + side) as u32;
                 }
             }
         }
         let alive = records.len();
         let mesh = Self {
             triangles: Journaled::new(records),
-            leaving: Journaled::new(leaving),
+            outgoing: Journaled::new(outgoing),
             alive,
             free_triangles: FreeSlots::default(),
             free_vertices: FreeSlots::new(vertices as u32),
@@ -165,95 +185,96 @@ impl EditMesh {
         Ok(mesh)
     }
 
-    /// All triangles by index, removed ones included.
+    /// All triangles by index, including removed ones.
     pub fn triangles(&self) -> &[EditTriangle] {
         self.triangles.items()
     }
 
-    /// The recorded array of triangles.
+    /// The array of triangles with its journal.
     pub fn journal(&self) -> &Journaled<EditTriangle> {
         &self.triangles
     }
 
-    /// Number of triangles that are there.
+    /// Number of triangles without removed ones.
     pub fn alive(&self) -> usize {
         self.alive
     }
 
-    /// Number of vertices, removed ones included.
+    /// Number of vertices, including removed ones.
     pub fn vertex_count(&self) -> usize {
-        self.leaving.items().len()
+        self.outgoing.items().len()
     }
 
-    /// The vertex that a half-edge starts from.
+    /// The start vertex of a half-edge.
     #[inline]
     pub fn start(&self, half_edge: u32) -> u32 {
         self.triangles()[half_edge as usize / 3].vertices[half_edge as usize % 3]
     }
 
-    /// The vertex that a half-edge runs to.
+    /// The end vertex of a half-edge.
     #[inline]
     pub fn end(&self, half_edge: u32) -> u32 {
         self.start(next(half_edge))
     }
 
-    /// The half-edge on the other side, or [`NONE`].
+    /// The half-edge on the other side of the edge, or [`NONE`] at the boundary.
     #[inline]
     pub fn twin(&self, half_edge: u32) -> u32 {
         self.triangles()[half_edge as usize / 3].twins[half_edge as usize % 3]
     }
 
-    /// A half-edge that leaves `vertex`, at the boundary the one without a twin; [`NONE`] for a vertex without triangles.
+    /// An outgoing half-edge of `vertex`, at the boundary the one without a twin. [`NONE`] for a
+    /// vertex without triangles.
     #[inline]
     pub fn outgoing(&self, vertex: u32) -> u32 {
-        self.leaving.items()[vertex as usize]
+        self.outgoing.items()[vertex as usize]
     }
 
-    /// Whether the surface ends at `vertex`.
+    /// Whether `vertex` is on the boundary.
     pub fn is_boundary(&self, vertex: u32) -> bool {
-        let leaving = self.outgoing(vertex);
-        leaving != NONE && self.twin(leaving) == NONE
+        let outgoing = self.outgoing(vertex);
+        outgoing != NONE && self.twin(outgoing) == NONE
     }
 
-    /// The half-edge from one vertex to another, if there is one.
+    /// The half-edge between two vertices, if it exists.
     pub fn half_edge(&self, from: u32, to: u32) -> Option<u32> {
         self.fan(from).find(|&half_edge| self.end(half_edge) == to)
     }
 
-    /// Makes room for more vertices and triangles.
+    /// Reserves capacity for additional vertices and triangles.
     pub fn reserve(&mut self, vertices: usize, triangles: usize) {
-        self.leaving.reserve(vertices);
+        self.outgoing.reserve(vertices);
         self.triangles.reserve(triangles);
     }
 
-    /// Begins to record edits.
+    /// Begins to record edits, and returns the number of triangles for [`finish`](Self::finish).
     pub fn begin(&mut self) -> usize {
         self.triangles.begin();
-        self.leaving.begin();
+        self.outgoing.begin();
         self.alive
     }
 
-    /// Ends recording; `alive` is what [`begin`](Self::begin) returned.
+    /// Ends recording. `alive` is the result of [`begin`](Self::begin).
     pub fn finish(&mut self, alive: usize) -> EditDelta {
-        let delta = EditDelta { triangles: self.triangles.finish(), leaving: self.leaving.finish(), alive };
+        let delta = EditDelta { triangles: self.triangles.finish(), outgoing: self.outgoing.finish(), alive };
         self.follow(&delta);
         delta
     }
 
-    /// Takes the surface to the other end of `delta`; see [`Journaled::swap`].
+    /// Undoes the edits of `delta`, or redoes them if they are undone; see [`Journaled::swap`].
     ///
     /// # Panics
-    /// If the delta is not that of the last edits.
+    /// Possibly, if the delta does not belong to the last edits.
     pub fn swap(&mut self, delta: &mut EditDelta) {
         self.triangles.swap(&mut delta.triangles);
-        self.leaving.swap(&mut delta.leaving);
+        self.outgoing.swap(&mut delta.outgoing);
         std::mem::swap(&mut self.alive, &mut delta.alive);
         self.follow(delta);
     }
 
     fn follow(&mut self, delta: &EditDelta) {
         self.free_triangles.follow(&self.triangles, &delta.triangles, |triangle| !triangle.is_alive());
-        self.free_vertices.follow(&self.leaving, &delta.leaving, |&leaving| leaving == NONE);
+        self.free_vertices.follow(&self.outgoing, &delta.outgoing, |&outgoing| outgoing == NONE);
     }
 
     fn add_triangle(&mut self, vertices: [u32; 3]) -> u32 {
@@ -265,8 +286,8 @@ impl EditMesh {
 
     /// Adds a vertex without triangles.
     fn add_vertex(&mut self) -> u32 {
-        let vertex = self.free_vertices.take(self.leaving.items().len());
-        self.leaving.put(vertex, NONE);
+        let vertex = self.free_vertices.take(self.outgoing.items().len());
+        self.outgoing.put(vertex, NONE);
         vertex
     }
 
@@ -282,7 +303,7 @@ impl EditMesh {
         }
     }
 
-    /// Makes two half-edges, either of which may be [`NONE`], the two sides of one edge.
+    /// Makes two half-edges twins. Either may be [`NONE`].
     fn join(&mut self, one: u32, other: u32) {
         self.set_twin(one, other);
         self.set_twin(other, one);
@@ -290,14 +311,14 @@ impl EditMesh {
 }
 
 impl EditDelta {
-    /// Bytes that it holds.
+    /// Memory use in bytes.
     pub fn bytes(&self) -> usize {
-        self.triangles.bytes() + self.leaving.bytes()
+        self.triangles.bytes() + self.outgoing.bytes()
     }
 
-    /// Gives back memory that is not in use.
+    /// Releases unused memory.
     pub fn shrink(&mut self) {
         self.triangles.shrink();
-        self.leaving.shrink();
+        self.outgoing.shrink();
     }
 }

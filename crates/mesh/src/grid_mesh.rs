@@ -1,28 +1,39 @@
-//! Meshes of grids of points, as sweeps make them.
+//! Meshes of point grids, such as swept surfaces.
 
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
 
 use crate::TriMesh;
 
-/// A grid of points, row by row, that becomes two triangles a cell.
+/// A grid of points, row by row, that is meshed with two triangles per cell.
 ///
-/// The outside is where the steps along a row, then along a column, turn counter-clockwise: to the right of a row that
-/// runs counter-clockwise about the direction of the columns.
+/// Seen from outside, a step along a row followed by a step to the next row turns
+/// counter-clockwise. A tube is therefore oriented outward if its rows run counter-clockwise about
+/// the direction from the first row to the last.
+///
+/// ```
+/// use glam::dvec3;
+/// use isochore_mesh::GridMesh;
+///
+/// let points: Vec<_> = (0..6).map(|i| dvec3(f64::from(i % 3), f64::from(i / 3), 0.0)).collect();
+/// let grid = GridMesh { points: &points, columns: 3, rows_close: false, columns_close: false };
+/// assert_eq!(grid.mesh().triangles, [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]]);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct GridMesh<'a> {
-    /// Points, row by row, model units.
+    /// Points, row by row, in model units.
     pub points: &'a [DVec3],
-    /// Points in a row, two at least.
+    /// Points in a row, at least two.
     pub columns: usize,
-    /// Whether the last row is followed by the first.
+    /// Whether the last row connects to the first.
     pub rows_close: bool,
-    /// Whether the last point of a row is followed by its first.
+    /// Whether the last point of a row connects to its first.
     pub columns_close: bool,
 }
 
 impl GridMesh<'_> {
-    /// The mesh of the grid; its vertices are the points in their order. Closed where both directions close.
+    /// The mesh of the grid, whose vertices are the points in their order. It is closed if both
+    /// directions close.
     ///
     /// # Panics
     /// If the points do not fill whole rows, or there are more than 2³² of them.
@@ -45,19 +56,20 @@ impl GridMesh<'_> {
         TriMesh { positions: self.points.to_vec(), triangles, ..TriMesh::default() }
     }
 
-    /// The mesh with its first and last rows closed by the inside of `outline`, a simple polygon with one corner a
-    /// column, counter-clockwise as seen from the last row.
+    /// The mesh with caps on its first and last rows. Both are triangulated as the interior of
+    /// `outline`, a simple polygon with one corner per column, counter-clockwise seen from the side
+    /// of the last row.
     ///
     /// # Panics
-    /// As [`mesh`](Self::mesh), and if the outline has not one corner a column.
+    /// As [`mesh`](Self::mesh), and if the outline does not have one corner per column.
     pub fn capped_mesh(&self, outline: &[DVec2]) -> TriMesh {
-        assert_eq!(outline.len(), self.columns, "one corner a column");
+        assert_eq!(outline.len(), self.columns, "one corner per column");
         let mut mesh = self.mesh();
         let mut cap: Vec<u32> = Vec::new();
         Earcut::new().earcut(outline.iter().map(|corner| corner.to_array()), &[], &mut cap);
         let last_row = (self.points.len() - self.columns) as u32;
         for triangle in cap.chunks_exact(3) {
-            // The triangulation does not promise an orientation.
+            // The library does not guarantee an orientation.
             let [a, b, c] = [triangle[0], triangle[1], triangle[2]].map(|corner| outline[corner as usize]);
             let [i, j, k] = if (b - a).perp_dot(c - a) >= 0.0 {
                 [triangle[0], triangle[1], triangle[2]]
@@ -76,7 +88,7 @@ mod tests {
     use super::*;
     use crate::ClosedMesh;
 
-    /// A dented hexagon, counter-clockwise, of area 2.
+    /// A concave hexagon, counter-clockwise, of area 2.
     const OUTLINE: [DVec2; 6] = [
         DVec2::new(0.0, 0.0),
         DVec2::new(1.0, 0.5),
@@ -91,18 +103,18 @@ mod tests {
     }
 
     #[test]
-    fn a_capped_prism_is_closed_and_has_its_volume() {
+    fn capped_prism_is_closed_with_exact_volume() {
         let points = prism();
         let grid = GridMesh { points: &points, columns: 6, rows_close: false, columns_close: true };
         let mesh = grid.capped_mesh(&OUTLINE);
         assert_eq!(mesh.triangles.len(), 2 * 3 * 6 + 2 * 4);
         let closed = ClosedMesh::new(&mesh).unwrap();
-        // Outside out: area 2 times height 3.
+        // Area 2 times height 3, positive for outward orientation.
         assert!((closed.volume() - 6.0).abs() < 1e-14);
     }
 
     #[test]
-    fn a_torus_is_closed_in_both_directions() {
+    fn torus_is_closed_in_both_directions() {
         let points: Vec<DVec3> = (0..40)
             .flat_map(|i| {
                 let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(i) / 40.0);
@@ -118,12 +130,12 @@ mod tests {
         let mesh = grid.mesh();
         let volume = ClosedMesh::new(&mesh).unwrap().volume();
         let exact = 2.0 * std::f64::consts::PI * std::f64::consts::PI * 2.0 * 0.25;
-        // Inscribed polygons lose 2π²/(3n²) of each area.
+        // Inscribed n-gons lose 2π²/(3n²) of each area.
         assert!(volume > 0.0 && (volume / exact - 1.0).abs() < 0.03, "{volume} against {exact}");
     }
 
     #[test]
-    fn an_open_grid_is_a_sheet() {
+    fn open_grid_is_a_sheet() {
         let points = prism();
         let mesh = GridMesh { points: &points, columns: 6, rows_close: false, columns_close: false }.mesh();
         assert_eq!(mesh.triangles.len(), 2 * 3 * 5);

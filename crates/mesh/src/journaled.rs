@@ -1,39 +1,56 @@
-//! An array that remembers what it held, so that a stretch of edits can be undone and redone to the bit.
+//! An array that records its previous items, so that edits can be undone and redone exactly.
 
 mod free_slots;
 
 pub use free_slots::FreeSlots;
 
-/// An array whose edits can be recorded. Undo costs time and memory in proportion to what was edited, never to the length.
+/// An array whose edits can be recorded. Undo takes time and memory in proportion to the number of
+/// edited items, independent of the length.
+///
+/// ```
+/// use isochore_mesh::Journaled;
+///
+/// let mut array = Journaled::new(vec![1, 2, 3]);
+/// array.begin();
+/// array.set(0, 10);
+/// array.push(4);
+/// let mut delta = array.finish();
+/// array.swap(&mut delta);
+/// assert_eq!(array.items(), [1, 2, 3]);
+/// array.swap(&mut delta);
+/// assert_eq!(array.items(), [10, 2, 3, 4]);
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Journaled<T> {
     items: Vec<T>,
-    /// While recording, where in `old` an item may be; right only if `old` agrees, so it is never cleared.
+    /// For each item, its presumed index in `old`. It is valid only if the entry in `old` names the
+    /// item, so it need not be cleared when a recording begins.
     slots: Vec<u32>,
-    /// Items edited since recording began, with what they were.
+    /// Items edited since recording began, with their previous values.
     old: Vec<(u32, T)>,
-    /// Length when recording began; none while nothing is recorded.
+    /// Length when recording began, or `None` without a recording.
     start: Option<usize>,
 }
 
-/// What an array held at the other end of a recorded stretch of edits: before it, or once undone, after it.
+/// The items of an array before a recording, for undo, or after it once undone, for redo.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Delta<T> {
     items: Vec<(u32, T)>,
-    /// Items beyond the shorter length, while the other end is the longer one.
+    /// Appended items, while they are undone.
     tail: Vec<T>,
-    /// Their number, wherever they are.
+    /// Number of appended items, whether they are in `tail` or in the array.
     tail_length: usize,
+    /// Length of the array in the other state.
     length: usize,
 }
 
 impl<T: Copy> Journaled<T> {
-    /// The array `items`, not recorded.
+    /// Creates an array without a recording.
     pub fn new(items: Vec<T>) -> Self {
         Self { slots: vec![0; items.len()], items, old: Vec::new(), start: None }
     }
 
-    /// The items as they are.
+    /// The current items.
     pub fn items(&self) -> &[T] {
         &self.items
     }
@@ -41,18 +58,18 @@ impl<T: Copy> Journaled<T> {
     /// Item `index`.
     ///
     /// # Panics
-    /// If there is none.
+    /// If the index is out of range.
     pub fn get(&self, index: u32) -> T {
         self.items[index as usize]
     }
 
-    /// Makes room for `additional` more items.
+    /// Reserves capacity for `additional` more items.
     pub fn reserve(&mut self, additional: usize) {
         self.items.reserve(additional);
         self.slots.reserve(additional);
     }
 
-    /// Begins to record edits; what was recorded and not [taken](Self::finish) is forgotten.
+    /// Begins to record edits. Discards a recording that is not [finished](Self::finish).
     pub fn begin(&mut self) {
         self.old.clear();
         self.start = Some(self.items.len());
@@ -61,16 +78,17 @@ impl<T: Copy> Journaled<T> {
     /// Replaces item `index`.
     ///
     /// # Panics
-    /// If there is none.
+    /// If the index is out of range.
     pub fn set(&mut self, index: u32, item: T) {
         self.record(index);
         self.items[index as usize] = item;
     }
 
-    /// Replaces item `index` and records nothing: what undo leads to keeps it, unless the item was set since recording began.
+    /// Replaces item `index` without recording the edit. Undo keeps the new value, unless the item
+    /// was set since recording began.
     ///
     /// # Panics
-    /// If there is none.
+    /// If the index is out of range.
     pub fn amend(&mut self, index: u32, item: T) {
         self.items[index as usize] = item;
     }
@@ -82,10 +100,10 @@ impl<T: Copy> Journaled<T> {
         self.items.len() as u32 - 1
     }
 
-    /// Replaces item `index`, or appends it where that is the number of items.
+    /// Replaces item `index`, or appends it if `index` equals the number of items.
     ///
     /// # Panics
-    /// If there is none, and none can be appended there.
+    /// If the index is larger than the number of items.
     pub fn put(&mut self, index: u32, item: T) {
         if index as usize == self.items.len() {
             self.push(item);
@@ -94,10 +112,10 @@ impl<T: Copy> Journaled<T> {
         }
     }
 
-    /// What item `index` was when recording began; none for items appended since.
+    /// Value of item `index` when recording began. `None` for items appended since.
     ///
     /// # Panics
-    /// If there is no such item.
+    /// Possibly, if the index is out of range.
     pub fn original(&self, index: u32) -> Option<T> {
         let start = self.start.unwrap_or(self.items.len());
         ((index as usize) < start).then(|| match self.recorded(index) {
@@ -111,12 +129,14 @@ impl<T: Copy> Journaled<T> {
         self.start.unwrap_or(self.items.len())
     }
 
-    /// Indices of the items edited since recording began, appended ones left out, in order of first edit.
+    /// Indices of the items edited since recording began, without appended ones, in order of the
+    /// first edit.
     pub fn edited(&self) -> impl Iterator<Item = u32> + '_ {
         self.old.iter().map(|&(index, _)| index)
     }
 
-    /// Ends recording and returns the way back, in order of the indices, so that it goes through memory once.
+    /// Ends recording and returns the delta that undoes it. It is sorted by index, so that undo
+    /// passes through memory once.
     pub fn finish(&mut self) -> Delta<T> {
         let length = self.start.take().unwrap_or(self.items.len());
         let mut items = std::mem::take(&mut self.old);
@@ -124,20 +144,20 @@ impl<T: Copy> Journaled<T> {
         Delta { items, tail: Vec::new(), tail_length: self.items.len() - length, length }
     }
 
-    /// Takes the array to the other end of `delta`, which then leads back. Deltas must be swapped in reverse order of their
-    /// recording, and redone in order.
+    /// Undoes the edits of `delta`, which then redoes them at the next call. Deltas must be undone
+    /// in reverse order of their recording, and redone in order.
     ///
     /// # Panics
-    /// If the delta is not that of the last edits.
+    /// Possibly, if the delta does not belong to the last edits.
     pub fn swap(&mut self, delta: &mut Delta<T>) {
-        let now = self.items.len();
-        if delta.length < now {
+        let current_length = self.items.len();
+        if delta.length < current_length {
             delta.tail = self.items.split_off(delta.length);
         } else {
             self.items.append(&mut std::mem::take(&mut delta.tail));
         }
         self.slots.resize(self.items.len(), 0);
-        delta.length = now;
+        delta.length = current_length;
         for (index, item) in &mut delta.items {
             std::mem::swap(item, &mut self.items[*index as usize]);
         }
@@ -158,22 +178,23 @@ impl<T: Copy> Journaled<T> {
 }
 
 impl<T> Delta<T> {
-    /// Indices of the items that differ at the two ends, those beyond the shorter length left out.
+    /// Indices of the edited items, without appended ones.
     pub fn indices(&self) -> impl Iterator<Item = u32> + '_ {
         self.items.iter().map(|&(index, _)| index)
     }
 
-    /// Length of the array at the other end.
+    /// Length of the array in the other state.
     pub fn length(&self) -> usize {
         self.length
     }
 
-    /// Bytes that it holds at most, whichever end it leads to: items appended are counted before it has to hold them.
+    /// Upper bound of the memory use in bytes, the same before and after undo: appended items count
+    /// even while the array stores them.
     pub fn bytes(&self) -> usize {
         self.items.capacity() * size_of::<(u32, T)>() + self.tail_length.max(self.tail.capacity()) * size_of::<T>()
     }
 
-    /// Gives back memory that is not in use.
+    /// Releases unused memory.
     pub fn shrink(&mut self) {
         self.items.shrink_to_fit();
         self.tail.shrink_to_fit();
@@ -195,7 +216,7 @@ mod tests {
         Redo,
     }
 
-    /// Items at the other end of a delta.
+    /// The items in the other state of a delta, and the delta.
     type State = (Vec<u8>, Delta<u8>);
 
     fn edits() -> impl Strategy<Value = Vec<Edit>> {
@@ -210,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_delta_holds_no_more_than_it_said() {
+    fn memory_use_is_the_same_before_and_after_undo() {
         let mut array = Journaled::new(vec![0_u64; 100]);
         array.begin();
         (0..1000).for_each(|item| assert_eq!(array.push(item), 100 + item as u32));
@@ -228,7 +249,7 @@ mod tests {
         fn every_undo_and_redo_is_exact(edits in edits()) {
             let mut array = Journaled::new(vec![1_u8, 2, 3]);
             let mut plain = vec![1_u8, 2, 3];
-            // Past states with the way back to them, and undone ones.
+            // Past states with the deltas that lead to them, and undone ones.
             let (mut past, mut future) = (Vec::<State>::new(), Vec::<State>::new());
             let mut before = plain.clone();
             array.begin();

@@ -1,4 +1,4 @@
-//! Closed meshes of simple shapes, outside out.
+//! Closed, outward-oriented meshes of simple shapes.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,9 +7,17 @@ use rustc_hash::FxHashMap;
 
 use crate::TriMesh;
 
-/// A sphere about the origin: an icosahedron whose triangles are split in four `subdivisions` times.
+/// A sphere about the origin: an icosahedron whose triangles are split into four, `subdivisions`
+/// times.
 ///
-/// It has 20 · 4ⁿ triangles. Coordinates are computed on the unit sphere, then scaled.
+/// It has 20 · 4ⁿ triangles for n subdivisions. Coordinates are computed on the unit sphere, then
+/// scaled.
+///
+/// ```
+/// let ball = isochore_mesh::primitives::icosphere(2.0, 3);
+/// assert_eq!(ball.triangles.len(), 20 * 64);
+/// assert!(ball.positions.iter().all(|position| (position.length() - 2.0).abs() < 1e-14));
+/// ```
 ///
 /// # Panics
 /// If it would have more than 2³¹ vertices (above 13 subdivisions).
@@ -72,7 +80,8 @@ pub fn icosphere(radius: f64, subdivisions: u32) -> TriMesh {
     TriMesh::new(positions, triangles)
 }
 
-/// A sphere about the origin with poles on the z axis, `longitude` segments around and `latitude` from pole to pole.
+/// A sphere about the origin with its poles on the z axis, `longitude` segments around the axis and
+/// `latitude` segments from pole to pole.
 ///
 /// Each pole is one vertex; there are 2 · longitude · (latitude − 1) triangles.
 ///
@@ -111,7 +120,16 @@ pub fn latitude_longitude_sphere(radius: f64, longitude: usize, latitude: usize)
 
 /// A box about the origin whose faces are grids of `segments` cells along x, y and z.
 ///
-/// Vertices are shared along the box's edges. The diagonals of all cells of a face are parallel.
+/// Faces have common vertices along the edges of the box. The diagonals of all cells of a face are
+/// parallel.
+///
+/// ```
+/// use glam::DVec3;
+///
+/// let mesh = isochore_mesh::primitives::box_mesh(DVec3::new(1.0, 0.5, 0.5), [4, 2, 2]);
+/// assert_eq!(mesh.triangles.len(), 2 * (4 * 2 * 4 + 2 * 2 * 2));
+/// assert_eq!(mesh.volume(), 2.0);
+/// ```
 ///
 /// # Panics
 /// If a number of segments is zero.
@@ -128,7 +146,7 @@ pub fn box_mesh(half_extents: DVec3, segments: [usize; 3]) -> TriMesh {
         })
     };
     for axis in 0..3 {
-        // u × v points along the axis, out of the far face and into the near one.
+        // u × v points along the axis: outward at the far face and inward at the near one.
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         for is_far in [false, true] {
             for row in 0..segments[v] {
@@ -141,10 +159,7 @@ pub fn box_mesh(half_extents: DVec3, segments: [usize; 3]) -> TriMesh {
                         vertex_at(cell)
                     };
                     let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-                    triangles.extend(match is_far {
-                        true => [[a, b, c], [a, c, d]],
-                        false => [[a, c, b], [a, d, c]],
-                    });
+                    triangles.extend(if is_far { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] });
                 }
             }
         }
@@ -157,7 +172,7 @@ mod tests {
     use super::*;
     use crate::ClosedMesh;
 
-    /// Volume of a mesh that must be closed, oriented and without any defect.
+    /// Volume of a mesh that is checked to be closed, oriented and free of defects.
     fn sound_volume(mesh: &TriMesh) -> f64 {
         let check = mesh.check();
         assert!(check.is_closed() && check.is_oriented() && check.is_manifold() && check.is_valid());
@@ -166,8 +181,8 @@ mod tests {
         ClosedMesh::new(mesh).unwrap().volume()
     }
 
-    // Compared to 1e-14 of the volume: coordinates of correctly rounded products are good to 2 ulp each, and a volume is
-    // of third degree in them. Golden volumes are independent computations in double precision.
+    // The relative tolerance is 1e-14: coordinates are accurate to 2 ulp each, and a volume is
+    // cubic in them. Golden volumes are independent computations in double precision.
     fn assert_golden(volume: f64, golden: f64) {
         assert!((volume - golden).abs() < 1e-14 * golden, "{volume} is not {golden}");
     }
@@ -206,8 +221,8 @@ mod tests {
         assert_eq!(sound_volume(&box_mesh(DVec3::new(1.0, 2.0, 0.5), [1, 1, 1])), 8.0);
     }
 
-    /// The twist by 90° in all moves every vertex exactly, so what changes the volume is the facets alone, and that
-    /// depends on the cells' diagonals.
+    /// The twist by a total of 90° moves every vertex exactly, so only the facets change the
+    /// volume. The change depends on the diagonals of the cells.
     #[test]
     fn twisted_box_has_golden_facet_error() {
         let mut mesh = box_mesh(DVec3::ONE, [40, 60, 60]);

@@ -1,5 +1,5 @@
-//! A hierarchy of boxes over the triangles of a surface that moves and is edited: boxes are made anew along the ways from what
-//! has changed to the root, and nowhere else.
+//! A bounding volume hierarchy over the triangles of a surface that moves and is edited. An update
+//! recomputes only the boxes on the paths from changed triangles to the root.
 
 mod query;
 #[cfg(test)]
@@ -12,33 +12,49 @@ pub use query::SurfaceHit;
 
 use crate::{Aabb, Bvh, BvhError};
 
-/// Triangles in a leaf when the tree is made. Larger looks at more triangles that are not in question; smaller spends memory
-/// and time on boxes.
+/// Triangles per leaf of a new tree. With a larger value queries test more triangles in vain; a
+/// smaller one spends memory and time on boxes.
 const LEAF_TRIANGLES: u32 = 8;
 
-/// Triangles at which a leaf is cut in two. Less than twice [`LEAF_TRIANGLES`] would cut leaves that have hardly grown.
+/// Triangles at which a leaf is split in two. A value below twice [`LEAF_TRIANGLES`] would split
+/// leaves that have hardly grown.
 const FULL_LEAF: u32 = 16;
 
-/// Leaves whose boxes one task makes at least. Larger leaves threads idle; smaller spends time on handing out tasks.
+/// Minimum number of leaves whose boxes one task computes. A larger value leaves threads idle; a
+/// smaller one spends time on scheduling.
 const LEAVES_PER_TASK: usize = 256;
 
 const NONE: u32 = u32::MAX;
 
-/// Boxes over triangles, which are told by number; where these are, a function tells, which gives nothing for those that are not
-/// there.
+/// A bounding volume hierarchy over triangles, identified by index. The caller passes functions
+/// that return their geometry, or nothing for removed triangles.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_mesh::{SurfaceTree, primitives};
+///
+/// let ball = primitives::icosphere(1.0, 3);
+/// let tree = SurfaceTree::new(&ball.positions, &ball.triangles)?;
+/// let corners = |triangle: u32| Some(ball.corners(triangle as usize));
+/// let hit = tree.cast_ray(3.0 * DVec3::Z, DVec3::NEG_Z, &corners).unwrap();
+/// assert!((hit.distance - 2.0).abs() < 0.02);
+/// let nearest = tree.closest_point(3.0 * DVec3::X, &corners).unwrap();
+/// assert!((nearest.point.x - 1.0).abs() < 0.02);
+/// # Ok::<(), isochore_mesh::BvhError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct SurfaceTree {
     nodes: Vec<Node>,
-    /// By triangle the leaf that holds it; [`NONE`] for one that is not there.
+    /// For each triangle its leaf; [`NONE`] for a removed one.
     leaf_of: Vec<u32>,
-    /// By triangle the next one in its leaf.
+    /// For each triangle the next one in its leaf.
     following: Vec<u32>,
-    /// Whether a node is on the list of those to be made anew.
+    /// Whether a node is on the list `due` of those whose box must be recomputed.
     is_due: Vec<bool>,
     due: Vec<u32>,
 }
 
-/// A box; children come behind their parents and beside each other.
+/// A node. Children are adjacent and come after their parents.
 #[derive(Debug, Clone, Copy)]
 struct Node {
     bounds: Aabb,
@@ -52,7 +68,7 @@ struct Node {
 }
 
 impl SurfaceTree {
-    /// The tree over `triangles`. No triangles at all are a tree, too.
+    /// The tree over `triangles`, which may be empty.
     ///
     /// # Errors
     /// [`BvhError`] for an index out of range or a coordinate that is not finite.
@@ -75,7 +91,7 @@ impl SurfaceTree {
         Ok(tree)
     }
 
-    /// Takes over the nodes of `bvh` down to where few enough triangles are left.
+    /// Copies the upper nodes of `bvh`, down to nodes that are small enough for leaves.
     fn copy(&mut self, bvh: &Bvh) {
         let source = bvh.nodes();
         let mut rest = bvh.order().iter();
@@ -126,7 +142,7 @@ impl SurfaceTree {
         })
     }
 
-    /// Number of triangles, those included that are not there any more.
+    /// Number of triangles, including removed ones.
     pub fn len(&self) -> usize {
         self.leaf_of.len()
     }
@@ -136,41 +152,41 @@ impl SurfaceTree {
         self.leaf_of.is_empty()
     }
 
-    /// Makes room for `additional` more triangles.
+    /// Reserves capacity for `additional` more triangles.
     pub fn reserve(&mut self, additional: usize) {
         self.leaf_of.reserve(additional);
         self.following.reserve(additional);
-        // Leaves are cut when they hold FULL_LEAF triangles, into halves, and each cut makes two nodes.
+        // A leaf of FULL_LEAF triangles is split into halves, which adds two nodes.
         let nodes = 2 * additional.div_ceil(FULL_LEAF as usize / 2);
         self.nodes.reserve(nodes);
         self.is_due.reserve(nodes);
     }
 
-    /// Takes in a triangle beside those of its neighbors that are there, or where a search finds its place.
+    /// Inserts a triangle into the leaf of a neighbor, or into one found by descending.
     fn insert(&mut self, triangle: u32, neighbors: [u32; 3], bounds: &impl Fn(u32) -> Aabb) {
         let leaf_of = |&neighbor: &u32| self.leaf_of.get(neighbor as usize).copied().filter(|&leaf| leaf != NONE);
         let leaf = neighbors.iter().find_map(leaf_of).unwrap_or_else(|| self.descend(triangle, bounds));
         self.link(triangle, leaf);
         self.make_due(leaf);
         if self.nodes[leaf as usize].count >= FULL_LEAF {
-            self.cut(leaf, bounds);
+            self.split_leaf(leaf, bounds);
         }
     }
 
-    /// The leaf that a triangle fits in best.
+    /// The leaf that fits a triangle best.
     fn descend(&mut self, triangle: u32, bounds: &impl Fn(u32) -> Aabb) -> u32 {
         let bounds = bounds(triangle);
         let center = bounds.center();
         let mut node = 0;
         loop {
-            // Boxes grow at once, so that the next triangle finds its way by them.
+            // Boxes grow immediately, so that the search for the next triangle uses them.
             let grown = &mut self.nodes[node as usize].bounds;
             *grown = grown.union(bounds);
             if self.nodes[node as usize].child == NONE {
                 return node;
             }
             let child = self.nodes[node as usize].child;
-            // To the box that must grow least, or the one whose center is nearer.
+            // Descend into the box that is nearer, or else whose center is nearer.
             let cost = |index: u32| {
                 let bounds = self.nodes[index as usize].bounds;
                 let off = bounds.center().distance_squared(center);
@@ -180,15 +196,13 @@ impl SurfaceTree {
         }
     }
 
-    /// Makes a leaf the parent of two, halved along the longest side of the box of the centers.
-    fn cut(&mut self, leaf: u32, bounds: &impl Fn(u32) -> Aabb) {
-        let (gone, there): (Vec<_>, Vec<_>) = self
-            .of_leaf(leaf)
-            .map(|triangle| (bounds(triangle), triangle))
-            .partition(|&(bounds, _)| is_nothing(bounds));
-        gone.into_iter().for_each(|(_, triangle)| self.leaf_of[triangle as usize] = NONE);
+    /// Splits a leaf into two, at the median along the longest side of the box of the centers.
+    fn split_leaf(&mut self, leaf: u32, bounds: &impl Fn(u32) -> Aabb) {
+        let (removed, present): (Vec<_>, Vec<_>) =
+            self.of_leaf(leaf).map(|triangle| (bounds(triangle), triangle)).partition(|&(bounds, _)| is_empty(bounds));
+        removed.into_iter().for_each(|(_, triangle)| self.leaf_of[triangle as usize] = NONE);
         let mut triangles: Vec<(DVec3, u32)> =
-            there.into_iter().map(|(bounds, triangle)| (bounds.center(), triangle)).collect();
+            present.into_iter().map(|(bounds, triangle)| (bounds.center(), triangle)).collect();
         let size = Aabb::of(triangles.iter().map(|&(center, _)| center)).size();
         let axis = size.max_position();
         triangles.sort_unstable_by(|a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
@@ -214,11 +228,12 @@ impl SurfaceTree {
         }
     }
 
-    /// Makes the number of triangles `count`, and follows those of the triangles `changed` that have moved, gone, or come back; those
-    /// that are new need not be among them.
+    /// Sets the number of triangles to `count`, and updates the triangles `changed` that were
+    /// moved, removed or restored. `changed` need not include new triangles.
     ///
-    /// `bounds` tells the box of a triangle, empty where it is not there, and `near` gives nothing then. Where it knows neighbors of one
-    /// that is there, numbers out of range among them, its place is found without a search.
+    /// `bounds` returns the box of a triangle, which is empty for a removed one. `near` returns
+    /// candidates for its neighbors, or `None` for a removed triangle. A triangle with a neighbor
+    /// in the tree is inserted without a search; candidates out of range are ignored.
     pub fn update(
         &mut self,
         count: usize,
@@ -249,15 +264,15 @@ impl SurfaceTree {
         self.due = due;
         let boxes = leaves.par_iter().with_min_len(LEAVES_PER_TASK);
         let boxes: Vec<(Aabb, bool)> = boxes.map(|&leaf| self.leaf_bounds(leaf, bounds)).collect();
-        for (&leaf, (tight, has_gone)) in leaves.iter().zip(boxes) {
+        for (&leaf, (tight, has_removed)) in leaves.iter().zip(boxes) {
             self.is_due[leaf as usize] = false;
             self.nodes[leaf as usize].bounds = tight;
-            if has_gone {
-                let gone: Vec<u32> = self.of_leaf(leaf).filter(|&triangle| is_nothing(bounds(triangle))).collect();
-                gone.into_iter().for_each(|triangle| self.unlink(triangle));
+            if has_removed {
+                let removed: Vec<u32> = self.of_leaf(leaf).filter(|&triangle| is_empty(bounds(triangle))).collect();
+                removed.into_iter().for_each(|triangle| self.unlink(triangle));
             }
         }
-        // Children come behind their parents.
+        // In descending order, because children come after their parents.
         branches.sort_unstable_by(|a, b| b.cmp(a));
         for node in branches {
             self.is_due[node as usize] = false;
@@ -265,10 +280,10 @@ impl SurfaceTree {
         }
     }
 
-    /// The box around the triangles of a leaf, and whether any of them is not there.
+    /// The box around the triangles of a leaf, and whether any of them is removed.
     fn leaf_bounds(&self, leaf: u32, bounds: &impl Fn(u32) -> Aabb) -> (Aabb, bool) {
-        self.of_leaf(leaf).map(bounds).fold((Aabb::EMPTY, false), |(around, has_gone), bounds| {
-            (around.union(bounds), has_gone || is_nothing(bounds))
+        self.of_leaf(leaf).map(bounds).fold((Aabb::EMPTY, false), |(around, has_removed), bounds| {
+            (around.union(bounds), has_removed || is_empty(bounds))
         })
     }
 
@@ -280,7 +295,7 @@ impl SurfaceTree {
     }
 }
 
-/// Whether a box holds nothing.
-fn is_nothing(bounds: Aabb) -> bool {
+/// Whether a box is empty.
+fn is_empty(bounds: Aabb) -> bool {
     bounds.min.x > bounds.max.x
 }

@@ -1,24 +1,33 @@
-//! Edges of a mesh, as flat arrays.
+//! Edges of a mesh as flat arrays.
 
 use crate::TriMesh;
 
 /// Edges and the half-edges along them.
 ///
 /// Half-edge `3 t + k` runs from vertex `k` to vertex `k + 1` (modulo three) of triangle `t`.
+///
+/// ```
+/// use isochore_mesh::{Topology, primitives};
+///
+/// let topology = Topology::of(&primitives::icosphere(1.0, 0));
+/// assert_eq!(topology.edges.len(), 30);
+/// // Every edge of a closed surface has two half-edges.
+/// assert!((0..30).all(|edge| topology.half_edges(edge).len() == 2));
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Topology {
     /// End vertices of each edge, the smaller first; edges in ascending order.
     pub edges: Vec<[u32; 2]>,
-    /// The edge along each half-edge.
+    /// The edge of each half-edge.
     pub edge_of_half_edge: Vec<u32>,
     /// Half-edges grouped by edge, ascending in each group.
     half_edges: Vec<u32>,
-    /// Where each edge's group starts, and the end of the last.
+    /// Start of each edge's group in `half_edges`, and the end of the last group.
     starts: Vec<u32>,
 }
 
 impl Topology {
-    /// Edges of `mesh`. Takes time linear in the number of triangles: half-edges are bucketed by their smaller vertex.
+    /// Edges of `mesh`, in linear time: half-edges are bucketed by their smaller vertex.
     ///
     /// # Panics
     /// If an index is out of range, or the mesh has more than 2³²/3 triangles.
@@ -79,7 +88,7 @@ impl Topology {
     /// The half-edges along `edge`: one at a boundary, two inside a manifold surface.
     ///
     /// # Panics
-    /// If the edge does not exist.
+    /// If the index of the edge is out of range.
     pub fn half_edges(&self, edge: usize) -> &[u32] {
         &self.half_edges[self.starts[edge] as usize..self.starts[edge + 1] as usize]
     }
@@ -87,7 +96,7 @@ impl Topology {
     /// The three edges of `triangle`, the first from its first to its second vertex.
     ///
     /// # Panics
-    /// If the triangle does not exist.
+    /// If the index of the triangle is out of range.
     pub fn triangle_edges(&self, triangle: usize) -> [u32; 3] {
         std::array::from_fn(|side| self.edge_of_half_edge[3 * triangle + side])
     }

@@ -92,7 +92,7 @@ def test_attributes_are_kept():
     assert mesh.normals == pytest.approx(np.array([[[1, 0, 0], [0, 1, 0], [0.6, 0, 0.8]]]), abs=3e-8)
     bare = isochore.Mesh(np.eye(3), np.array([[0, 1, 2]])[::-1])
     assert bare.uvs == [] and bare.normals is None and bare.colors is None
-    with pytest.raises(ValueError, match="no direction"):
+    with pytest.raises(ValueError, match="zero or not finite"):
         isochore.Mesh(np.eye(3), [[0, 1, 2]], normals=np.zeros((1, 3, 3)))
     with pytest.raises(ValueError, match="normals must have the shape"):
         isochore.Mesh(np.eye(3), [[0, 1, 2]], normals=np.ones((3, 3)))

@@ -1,23 +1,24 @@
 use super::{EditMesh, EditTriangle, NONE, next, previous};
 
-/// What a collapse did.
+/// Result of the collapse of an edge.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Collapsed {
-    /// The vertex that is gone.
+    /// The removed vertex.
     pub removed: u32,
-    /// The vertex that took its place in its triangles.
+    /// The vertex that replaces it in its triangles.
     pub kept: u32,
-    /// The two triangles that are gone.
+    /// The two removed triangles.
     pub triangles: [u32; 2],
 }
 
 impl EditMesh {
-    /// Whether the start of `half_edge` can be merged into its end and leave a sound surface: the start is inside the surface,
-    /// the link condition holds (H. Edelsbrunner, *Geometry and Topology for Mesh Generation*, 2001, section 4.2), and the apexes
-    /// keep three triangles.
+    /// Whether merging the start of `half_edge` into its end leaves a manifold surface: the start
+    /// is not on the boundary, the link condition holds (H. Edelsbrunner, *Geometry and Topology
+    /// for Mesh Generation*, 2001, section 4.2), and the apexes keep at least three triangles, or
+    /// one at the boundary.
     ///
     /// # Panics
-    /// If the half-edge is not there.
+    /// If the half-edge does not exist.
     pub fn can_collapse(&self, half_edge: u32) -> bool {
         let twin = self.twin(half_edge);
         let (removed, kept) = (self.start(half_edge), self.end(half_edge));
@@ -29,9 +30,9 @@ impl EditMesh {
             let least = if self.is_boundary(vertex) { 1 } else { 3 };
             self.fan(vertex).take(least + 1).count() > least
         };
-        let mut shared = self.neighbors(removed).filter(|&vertex| self.neighbors(kept).any(|other| other == vertex));
-        let is_link_sound = shared.all(|vertex| apexes.contains(&vertex));
-        is_link_sound && apexes[0] != apexes[1] && apexes.into_iter().all(keeps_enough)
+        let mut common = self.neighbors(removed).filter(|&vertex| self.neighbors(kept).any(|other| other == vertex));
+        let link_condition = common.all(|vertex| apexes.contains(&vertex));
+        link_condition && apexes[0] != apexes[1] && apexes.into_iter().all(keeps_enough)
     }
 
     /// Merges the start of `half_edge` into its end.
@@ -39,36 +40,37 @@ impl EditMesh {
     /// Call [`can_collapse`](Self::can_collapse) first.
     ///
     /// # Panics
-    /// If the half-edge is not there, or has no twin.
+    /// If the half-edge does not exist or has no twin.
     pub fn collapse(&mut self, half_edge: u32) -> Collapsed {
         let twin = self.twin(half_edge);
         let (removed, kept) = (self.start(half_edge), self.end(half_edge));
         let [apex, far_apex] = [half_edge, twin].map(|side| self.start(previous(side)));
         let fan: Vec<u32> = self.fan(removed).collect();
-        for leaving in fan {
-            self.edit(leaving / 3, |record| record.vertices[leaving as usize % 3] = kept);
+        for outgoing in fan {
+            self.edit(outgoing / 3, |record| record.vertices[outgoing as usize % 3] = kept);
         }
-        // Outside the two triangles: at the near one from kept to apex and back, at the far one likewise.
+        // The outer half-edges of the two removed triangles become twins of each other, on each
+        // side.
         let (apex_to_kept, kept_to_apex) = (self.twin(next(half_edge)), self.twin(previous(half_edge)));
         let (far_apex_to_kept, kept_to_far_apex) = (self.twin(next(twin)), self.twin(previous(twin)));
         self.join(apex_to_kept, kept_to_apex);
         self.join(far_apex_to_kept, kept_to_far_apex);
-        let gone = [half_edge / 3, twin / 3];
-        let is_gone = |half_edge: u32| half_edge != NONE && gone.contains(&(half_edge / 3));
-        if is_gone(self.outgoing(kept)) {
-            self.leaving.set(kept, kept_to_apex);
+        let removed_triangles = [half_edge / 3, twin / 3];
+        let is_removed = |half_edge: u32| half_edge != NONE && removed_triangles.contains(&(half_edge / 3));
+        if is_removed(self.outgoing(kept)) {
+            self.outgoing.set(kept, kept_to_apex);
         }
-        if is_gone(self.outgoing(apex)) {
-            self.leaving.set(apex, apex_to_kept);
+        if is_removed(self.outgoing(apex)) {
+            self.outgoing.set(apex, apex_to_kept);
         }
-        if is_gone(self.outgoing(far_apex)) {
-            self.leaving.set(far_apex, far_apex_to_kept);
+        if is_removed(self.outgoing(far_apex)) {
+            self.outgoing.set(far_apex, far_apex_to_kept);
         }
-        self.leaving.set(removed, NONE);
-        for triangle in gone {
+        self.outgoing.set(removed, NONE);
+        for triangle in removed_triangles {
             self.triangles.set(triangle, EditTriangle::REMOVED);
         }
         self.alive -= 2;
-        Collapsed { removed, kept, triangles: gone }
+        Collapsed { removed, kept, triangles: removed_triangles }
     }
 }

@@ -1,6 +1,6 @@
 use super::{EditMesh, NONE, previous};
 
-/// The half-edges that leave a vertex, counter-clockwise seen from outside, one for each triangle at it.
+/// The outgoing half-edges of a vertex, one per triangle, counter-clockwise seen from outside.
 #[derive(Debug, Clone)]
 pub struct Fan<'a> {
     mesh: &'a EditMesh,
@@ -9,18 +9,18 @@ pub struct Fan<'a> {
 }
 
 impl EditMesh {
-    /// The half-edges that leave `vertex`, beginning with [`leaving`](Self::leaving).
+    /// The outgoing half-edges of `vertex`, starting with [`outgoing`](Self::outgoing).
     #[inline]
     pub fn fan(&self, vertex: u32) -> Fan<'_> {
         let first = self.outgoing(vertex);
         Fan { mesh: self, first, next: first }
     }
 
-    /// The vertices that `vertex` shares an edge with, in order around it.
+    /// The vertices that an edge connects to `vertex`, in order around it.
     pub fn neighbors(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
         let fan = self.fan(vertex);
         let last = self.fan(vertex).last().filter(|_| self.is_boundary(vertex));
-        // At the boundary the last edge has no half-edge that leaves the vertex.
+        // At the boundary the last edge has only an incoming half-edge.
         fan.map(|half_edge| self.end(half_edge)).chain(last.map(|half_edge| self.start(previous(half_edge))))
     }
 }
@@ -33,9 +33,9 @@ impl Iterator for Fan<'_> {
         if self.next == NONE {
             return None;
         }
-        let now = self.next;
-        let turned = self.mesh.twin(previous(now));
-        self.next = if turned == self.first { NONE } else { turned };
-        Some(now)
+        let current = self.next;
+        let following = self.mesh.twin(previous(current));
+        self.next = if following == self.first { NONE } else { following };
+        Some(current)
     }
 }

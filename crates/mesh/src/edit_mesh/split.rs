@@ -1,23 +1,24 @@
 use super::{EditMesh, next, previous};
 
-/// What the split of an edge made.
+/// Result of the split of an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Split {
     /// The new vertex.
     pub vertex: u32,
-    /// Triangle of the half-edge that was split, which keeps its start, and the new triangle with its end.
+    /// The triangle of the split half-edge, which keeps its start, and the new triangle at its end.
     pub near: [u32; 2],
-    /// The same on the other side: the triangle there keeps the start of the half-edge as well. None at the boundary.
+    /// The corresponding triangles of the twin: the first one also keeps the start of the
+    /// half-edge. `None` at the boundary.
     pub far: Option<[u32; 2]>,
 }
 
 impl EditMesh {
-    /// Splits the edge along `half_edge`, and with it the triangles on both sides.
+    /// Splits the edge of `half_edge` and the triangles on both sides.
     ///
-    /// In the new triangles the corner numbers are: near `[new, end, apex]`, far `[end, new, apex]`.
+    /// The corners of the new triangles are `[new, end, apex]` (near) and `[end, new, apex]` (far).
     ///
     /// # Panics
-    /// If the half-edge is not there.
+    /// If the half-edge does not exist.
     pub fn split(&mut self, half_edge: u32) -> Split {
         let twin = self.twin(half_edge);
         let (near, side) = (half_edge / 3, half_edge as usize % 3);
@@ -28,9 +29,9 @@ impl EditMesh {
         self.edit(near, |record| record.vertices[(side + 1) % 3] = vertex);
         self.join(3 * added + 1, beyond);
         self.join(next(half_edge), 3 * added + 2);
-        self.leaving.set(vertex, 3 * added);
+        self.outgoing.set(vertex, 3 * added);
         if self.outgoing(end) == next(half_edge) {
-            self.leaving.set(end, 3 * added + 1);
+            self.outgoing.set(end, 3 * added + 1);
         }
         if twin == super::NONE {
             return Split { vertex, near: [near, added], far: None };
@@ -44,10 +45,10 @@ impl EditMesh {
         self.join(3 * far_added + 2, beyond);
         self.join(across, 3 * far_added + 1);
         if self.outgoing(end) == twin {
-            self.leaving.set(end, 3 * far_added);
+            self.outgoing.set(end, 3 * far_added);
         }
         if self.outgoing(far_apex) == across {
-            self.leaving.set(far_apex, 3 * far_added + 2);
+            self.outgoing.set(far_apex, 3 * far_added + 2);
         }
         Split { vertex, near: [near, added], far: Some([far, far_added]) }
     }

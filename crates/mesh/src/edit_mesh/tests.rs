@@ -21,11 +21,11 @@ fn edit_mesh(mesh: &TriMesh) -> EditMesh {
     EditMesh::new(&mesh.triangles, mesh.positions.len()).unwrap()
 }
 
-/// What is there, made anew, must agree with what the edits left.
+/// Checks the edited mesh against one constructed from its triangles.
 fn assert_sound(mesh: &EditMesh) {
     let alive: Vec<[u32; 3]> = mesh.triangles().iter().filter(|t| t.is_alive()).map(|t| t.vertices).collect();
     assert_eq!(alive.len(), mesh.alive());
-    let anew = EditMesh::new(&alive, mesh.vertex_count()).expect("a sound surface");
+    let rebuilt = EditMesh::new(&alive, mesh.vertex_count()).expect("a manifold surface");
     for (half_edge, triangle) in mesh
         .triangles()
         .iter()
@@ -41,20 +41,20 @@ fn assert_sound(mesh: &EditMesh) {
     }
     for vertex in 0..mesh.vertex_count() as u32 {
         let ring = |mesh: &EditMesh| mesh.neighbors(vertex).collect::<Vec<_>>();
-        let (mut old, mut new) = (ring(mesh), ring(&anew));
-        assert_eq!(mesh.is_boundary(vertex), anew.is_boundary(vertex));
-        old.sort_unstable();
-        new.sort_unstable();
-        assert_eq!(old, new, "around {vertex}");
+        let (mut edited, mut expected) = (ring(mesh), ring(&rebuilt));
+        assert_eq!(mesh.is_boundary(vertex), rebuilt.is_boundary(vertex));
+        edited.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(edited, expected, "around {vertex}");
         assert!(mesh.fan(vertex).all(|half_edge| mesh.start(half_edge) == vertex));
     }
 }
 
-/// All that edits depend on.
+/// The complete state that edits depend on.
 #[derive(Debug, PartialEq)]
 struct State {
     triangles: Vec<EditTriangle>,
-    leaving: Vec<u32>,
+    outgoing: Vec<u32>,
     alive: usize,
     free: [FreeSlots; 2],
 }
@@ -63,14 +63,15 @@ impl State {
     fn of(mesh: &EditMesh) -> Self {
         Self {
             triangles: mesh.triangles().to_vec(),
-            leaving: mesh.leaving.items().to_vec(),
+            outgoing: mesh.outgoing.items().to_vec(),
             alive: mesh.alive(),
             free: [mesh.free_triangles.clone(), mesh.free_vertices.clone()],
         }
     }
 }
 
-/// One edit chosen by two numbers; returns the change of the number of triangles, if it was allowed.
+/// Performs an edit chosen by two numbers, if allowed, and returns the change of the number of
+/// triangles.
 fn edit(mesh: &mut EditMesh, kind: u8, pick: u32) -> Option<isize> {
     let half_edge = pick % (3 * mesh.triangles().len() as u32);
     if !mesh.triangles()[half_edge as usize / 3].is_alive() {
@@ -92,7 +93,7 @@ fn edit(mesh: &mut EditMesh, kind: u8, pick: u32) -> Option<isize> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
-    fn edits_leave_a_sound_surface_and_can_be_undone(
+    fn edits_keep_a_manifold_surface_and_can_be_undone(
         closed in any::<bool>(),
         stretches in prop::collection::vec(prop::collection::vec((any::<u8>(), any::<u32>()), 1..60), 1..5),
     ) {
@@ -125,7 +126,7 @@ proptest! {
 }
 
 #[test]
-fn a_split_keeps_the_corner_numbers_it_promises() {
+fn split_orders_the_corners_as_documented() {
     let mut mesh = edit_mesh(&box_mesh(glam::DVec3::ONE, [1, 1, 1]));
     let (half_edge, twin) = (4, mesh.twin(4));
     let (start, end) = (mesh.start(half_edge), mesh.end(half_edge));
@@ -139,7 +140,7 @@ fn a_split_keeps_the_corner_numbers_it_promises() {
 }
 
 #[test]
-fn places_are_taken_anew_once_the_edits_that_freed_them_are_recorded() {
+fn slots_are_reused_after_the_recording_that_freed_them() {
     let mut mesh = edit_mesh(&icosphere(1.0, 1));
     let (vertices, triangles) = (mesh.vertex_count(), mesh.triangles().len());
     let record = |mesh: &mut EditMesh, edits: &dyn Fn(&mut EditMesh)| {
@@ -148,14 +149,14 @@ fn places_are_taken_anew_once_the_edits_that_freed_them_are_recorded() {
         mesh.finish(alive)
     };
     let collapse = |mesh: &mut EditMesh, vertex: u32| {
-        let way = mesh.fan(vertex).find(|&half_edge| mesh.can_collapse(half_edge)).unwrap();
-        mesh.collapse(way).triangles
+        let half_edge = mesh.fan(vertex).find(|&half_edge| mesh.can_collapse(half_edge)).unwrap();
+        mesh.collapse(half_edge).triangles
     };
-    // A vertex that was there at first leaves its triangles to others, but not its number.
+    // The slot of an original vertex is never reused, but those of its triangles are.
     record(&mut mesh, &|mesh| {
-        let gone = collapse(mesh, 7);
+        let removed = collapse(mesh, 7);
         let split = mesh.split(mesh.outgoing(0));
-        assert!(!gone.contains(&split.near[1]) && split.vertex as usize == vertices);
+        assert!(!removed.contains(&split.near[1]) && split.vertex as usize == vertices);
     });
     record(&mut mesh, &|mesh| assert_eq!(collapse(mesh, vertices as u32).len(), 2));
     let mut delta = record(&mut mesh, &|mesh| {
@@ -164,20 +165,20 @@ fn places_are_taken_anew_once_the_edits_that_freed_them_are_recorded() {
         assert!((split.near[1] as usize) < triangles && (split.far.unwrap()[1] as usize) < triangles);
     });
     assert_eq!((mesh.vertex_count(), mesh.triangles().len()), (vertices + 1, triangles + 2));
-    // Undone, the places are free again, and the next to be taken.
+    // Undo frees the slots again, and they are the next to be used.
     mesh.swap(&mut delta);
     record(&mut mesh, &|mesh| assert_eq!(mesh.split(mesh.outgoing(5)).vertex as usize, vertices));
     assert_sound(&mesh);
 }
 
 #[test]
-fn a_tetrahedron_can_neither_be_collapsed_nor_flipped() {
+fn tetrahedron_allows_neither_collapse_nor_flip() {
     let mesh = EditMesh::new(&[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]], 4).unwrap();
     assert!((0..12).all(|half_edge| !mesh.can_collapse(half_edge) && !mesh.can_flip(half_edge)));
 }
 
 #[test]
-fn what_is_no_surface_is_refused() {
+fn rejects_non_manifold_input() {
     let refused = |triangles: &[[u32; 3]], vertices| EditMesh::new(triangles, vertices).unwrap_err();
     assert_eq!(refused(&[[0, 1, 1]], 2), EditMeshError::RepeatedVertex { triangle: 0, vertex: 1 });
     assert_eq!(

@@ -2,41 +2,43 @@ use std::collections::BTreeSet;
 
 use super::{Delta, Journaled};
 
-/// Which items of a [`Journaled`] array are free to be used anew.
+/// The slots of a [`Journaled`] array that can be reused.
 ///
-/// An item that becomes free while edits are recorded is taken in when the recording ends, so that what it was can be told until then.
-/// Which items are free depends on what the array holds alone, and the smallest is taken first: after undo and redo the same edits
-/// take the same items.
+/// A slot that becomes free during a recording can be reused only after it, so that its original
+/// value remains available until then. The set of free slots depends only on the items of the
+/// array, and the smallest slot is used first. The same edits therefore use the same slots after
+/// undo and redo.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct FreeSlots {
-    /// Items before this one are never free.
+    /// Slots before this one are never free.
     first: u32,
     slots: BTreeSet<u32>,
 }
 
 impl FreeSlots {
-    /// No item is free now, and those before `first` never will be.
+    /// An empty set. Slots before `first` will never be free.
     pub fn new(first: u32) -> Self {
         Self { first, slots: BTreeSet::new() }
     }
 
-    /// Takes the smallest free item, or the one that an array of `length` items would append.
+    /// Takes the smallest free slot, or the slot after the end of an array of `length` items.
     pub fn take(&mut self, length: usize) -> u32 {
         self.slots.pop_first().unwrap_or(length as u32)
     }
 
-    /// Follows an array that was [finished](Journaled::finish) or [swapped](Journaled::swap), where `delta` leads to its other end.
+    /// Updates the set after a [`finish`](Journaled::finish) or [`swap`](Journaled::swap) of
+    /// `array` with `delta`.
     pub fn follow<T: Copy>(&mut self, array: &Journaled<T>, delta: &Delta<T>, is_free: impl Fn(&T) -> bool) {
-        let now = array.items();
-        self.slots.split_off(&(now.len() as u32));
+        let items = array.items();
+        self.slots.split_off(&(items.len() as u32));
         for (index, other) in &delta.items {
-            match now.get(*index as usize) {
+            match items.get(*index as usize) {
                 Some(item) if is_free(item) => self.insert(*index),
                 Some(_) if is_free(other) => drop(self.slots.remove(index)),
                 _ => {}
             }
         }
-        for (index, item) in now.iter().enumerate().skip(delta.length) {
+        for (index, item) in items.iter().enumerate().skip(delta.length) {
             if is_free(item) {
                 self.insert(index as u32);
             }

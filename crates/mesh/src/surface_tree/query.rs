@@ -3,29 +3,31 @@ use glam::DVec3;
 use super::{NONE, SurfaceTree};
 use crate::{Aabb, bvh::closest_on_triangle};
 
-/// Relative slack of pruning, as in the hierarchy that does not move: some rounding errors of squared distances. Larger visits
-/// boxes in vain; smaller could miss the nearest triangle by a rounding error.
+/// Relative slack of pruning, as in [`crate::Bvh`]: a few rounding errors of squared distances. A
+/// larger value visits boxes in vain; a smaller one could miss the nearest triangle by a rounding
+/// error.
 const PRUNING_SLACK: f64 = 1.0 + 1e-14;
 
-/// A point of the surface that was found.
+/// A point of the surface found by a query.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceHit {
     /// The triangle.
     pub triangle: u32,
     /// The point, model units.
     pub point: DVec3,
-    /// Along a ray in lengths of its direction; else in model units.
+    /// Distance: for a ray in multiples of its direction, for a closest point in model units.
     pub distance: f64,
 }
 
 impl SurfaceTree {
-    /// Calls `visit` with every triangle whose leaf touches `bounds`, in no particular order; some of them may not.
+    /// Calls `visit` with every triangle whose leaf touches `bounds`, in unspecified order. Some of
+    /// these triangles may be outside `bounds`.
     pub fn visit_box(&self, bounds: Aabb, visit: impl FnMut(u32)) {
         self.visit(|other| bounds.overlaps(other), visit);
     }
 
-    /// Calls `visit` with every triangle of the leaves whose box, and every box around it, `may_touch` what is looked for, in no
-    /// particular order.
+    /// Calls `visit` with every triangle of the leaves whose box, and every enclosing box,
+    /// satisfies `may_touch`, in unspecified order.
     pub fn visit(&self, may_touch: impl Fn(Aabb) -> bool, mut visit: impl FnMut(u32)) {
         let mut stack = vec![0];
         while let Some(index) = stack.pop() {
@@ -40,8 +42,8 @@ impl SurfaceTree {
         }
     }
 
-    /// The first point of the surface along the ray from `origin`, seen from either side. Of triangles met at the same distance,
-    /// the one with the smallest number.
+    /// The first point of the surface along the ray from `origin`, from either side. Ties go to the
+    /// triangle with the smallest index. `None` if the ray misses or is invalid.
     pub fn cast_ray(
         &self,
         origin: DVec3,
@@ -56,7 +58,7 @@ impl SurfaceTree {
             let (to_min, to_max) = ((bounds.min - origin) * inverse, (bounds.max - origin) * inverse);
             let (mut first, mut last) = (0.0_f64, before);
             for axis in 0..3 {
-                // Along a side of the box the product is no number, which bounds nothing.
+                // Along a side of the box the product is NaN, which `min` and `max` ignore.
                 let (near, far) = if inverse[axis] < 0.0 { (to_max, to_min) } else { (to_min, to_max) };
                 first = first.max(near[axis]);
                 last = last.min(far[axis]);
@@ -93,8 +95,8 @@ impl SurfaceTree {
         best
     }
 
-    /// The point of the surface nearest to `point`; none where there is no surface or the point is not finite. Of equally near
-    /// triangles, the one with the smallest number.
+    /// The point of the surface nearest to `point`. Ties go to the triangle with the smallest
+    /// index. `None` if there are no triangles or the point is not finite.
     pub fn closest_point(&self, point: DVec3, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) -> Option<SurfaceHit> {
         if !point.is_finite() {
             return None;
@@ -129,8 +131,9 @@ impl SurfaceTree {
     }
 }
 
-/// Where a ray meets a triangle, in lengths of its direction (T. Möller, B. Trumbore, *Fast, Minimum Storage Ray/Triangle
-/// Intersection*, 1997). Edges belong to both of their triangles.
+/// The intersection of a ray and a triangle, in multiples of its direction (T. Möller, B. Trumbore,
+/// *Fast, Minimum Storage Ray/Triangle Intersection*, 1997). Edges belong to both of their
+/// triangles.
 fn meet(origin: DVec3, direction: DVec3, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
     let (ab, ac) = (b - a, c - a);
     let across = direction.cross(ac);
@@ -147,6 +150,7 @@ fn meet(origin: DVec3, direction: DVec3, [a, b, c]: &[DVec3; 3]) -> Option<f64> 
     (is_inside && distance >= 0.0 && distance.is_finite()).then_some(distance)
 }
 
-/// How far beyond an edge, in barycentric coordinates, a ray still meets a triangle. Larger shows at silhouettes; smaller lets rays
-/// through between two triangles by rounding.
+/// Distance beyond an edge, in barycentric coordinates, at which a ray still hits a triangle. A
+/// larger value is visible at silhouettes; with a smaller one rays slip between two triangles by
+/// rounding.
 const EDGE_SLACK: f64 = 1e-12;

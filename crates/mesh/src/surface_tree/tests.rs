@@ -13,7 +13,7 @@ fn moved(mesh: &TriMesh, seed: f64) -> TriMesh {
     mesh
 }
 
-/// What slow searches over all triangles find.
+/// Brute-force queries over all triangles.
 struct Slow<'a>(&'a TriMesh, &'a [bool]);
 
 impl Slow<'_> {
@@ -62,7 +62,7 @@ impl Slow<'_> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
-    fn a_tree_that_follows_agrees_with_slow_searches(
+    fn updated_tree_agrees_with_brute_force(
         seed in 0.01..2.0_f64,
         known in 0..320_usize,
         gone in prop::collection::vec(0..320_usize, 0..40),
@@ -74,7 +74,7 @@ proptest! {
         let mut alive = vec![true; rest.triangles.len()];
         {
             let bounds = |triangle: u32| Aabb::of(rest.corners(triangle as usize));
-            // Half of them beside another, the rest by a search.
+            // Half of them are inserted next to a neighbor, the rest by a search.
             let near = |triangle: u32| if triangle.is_multiple_of(2) { [NONE, triangle.wrapping_sub(1), triangle] } else { [NONE; 3] };
             tree.update(rest.triangles.len(), &[], &bounds, &|triangle| Some(near(triangle)));
         }
@@ -85,7 +85,7 @@ proptest! {
         let beside = |triangle: u32| alive[triangle as usize].then_some([NONE, triangle + 1, NONE]);
         tree.update(rest.triangles.len(), &changed, &|triangle| slow.bounds(triangle), &beside);
         slow.assert_agrees(&tree, point.into(), direction.into());
-        // What is gone comes back somewhere else, and all the rest goes.
+        // Removed triangles return at other positions, and all others are removed.
         let gone: Vec<bool> = alive.iter().map(|alive| !alive).collect();
         let elsewhere = moved(&rest, seed + 1.0);
         let back = Slow(&elsewhere, &gone);
@@ -93,9 +93,9 @@ proptest! {
         let beside = |triangle: u32| gone[triangle as usize].then_some([NONE; 3]);
         other.update(rest.triangles.len(), &changed, &|triangle| back.bounds(triangle), &beside);
         back.assert_agrees(&other, point.into(), direction.into());
-        // A tree without what is gone has no larger boxes than one that never knew it.
+        // Removed triangles do not enlarge the boxes.
         prop_assert_eq!(other.nodes[0].bounds, Aabb::of((0..320).filter_map(|triangle| back.corners(triangle)).flatten()));
-        // And with fewer triangles again.
+        // Fewer triangles.
         let beside = |triangle: u32| alive[triangle as usize].then_some([NONE; 3]);
         tree.update(200, &[], &|triangle| slow.bounds(triangle), &beside);
         let fewer = TriMesh::new(mesh.positions.clone(), mesh.triangles[..200].to_vec());
@@ -104,12 +104,12 @@ proptest! {
 }
 
 #[test]
-fn a_ray_finds_the_near_side_first() {
+fn ray_hits_the_near_side_first() {
     let mesh = icosphere(1.0, 3);
     let tree = SurfaceTree::new(&mesh.positions, &mesh.triangles).unwrap();
     let corners = |triangle: u32| Some(mesh.corners(triangle as usize));
     let hit = tree.cast_ray(dvec3(0.1, 0.2, 5.0), dvec3(0.0, 0.0, -2.0), &corners).unwrap();
-    // Flat triangles of this size lie at most 1.3 % below the sphere.
+    // Flat triangles of this size are at most 1.3 % below the sphere.
     assert!((hit.point.length() - 1.0).abs() < 0.013 && hit.point.z > 0.9);
     assert_eq!(tree.cast_ray(dvec3(0.1, 0.2, 5.0), dvec3(0.0, 0.0, 1.0), &corners), None);
     assert_eq!(tree.cast_ray(dvec3(0.1, 0.2, 5.0), DVec3::ZERO, &corners), None);

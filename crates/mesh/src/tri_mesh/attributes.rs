@@ -1,30 +1,43 @@
-//! What vertices and corners carry besides positions.
+//! Attributes of vertices and corners.
 
 use glam::{DVec3, DVec4, Vec2, Vec3};
 
 use super::TriMesh;
 
-/// Attributes by corner: one entry a triangle, three values in the order of its vertices.
+/// Attributes by corner: one entry per triangle, with three values in the order of its vertices.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CornerAttributes {
-    /// Sets of texture coordinates, each as long as the triangles; in single precision, as renderers and glTF want them.
+    /// Sets of texture coordinates, each with one entry per triangle. They are in single precision,
+    /// as in renderers and glTF.
     pub uvs: Vec<Vec<[Vec2; 3]>>,
-    /// Shading normals, unit length; in single precision too.
+    /// Shading normals of unit length, in single precision.
     pub normals: Vec<[Vec3; 3]>,
     /// Linear RGBA, 0 to 1.
     pub colors: Vec<[DVec4; 3]>,
 }
 
 impl CornerAttributes {
-    /// True where no corner carries anything.
+    /// Whether the corners have no attributes.
     pub fn is_empty(&self) -> bool {
         self.uvs.is_empty() && self.normals.is_empty() && self.colors.is_empty()
     }
 
-    /// Takes shading normals from vectors of any length, three for each triangle.
+    /// Sets the shading normals from vectors of any length, three for each triangle.
     ///
     /// # Errors
-    /// [`AttributeError::NoDirection`]; the normals are then as they were before.
+    /// [`AttributeError::NoDirection`] if a vector is zero or not finite. The normals are then
+    /// unchanged.
+    ///
+    /// ```
+    /// use glam::{DVec3, Vec3};
+    /// use isochore_mesh::CornerAttributes;
+    ///
+    /// let mut corner = CornerAttributes::default();
+    /// corner.set_normals(&[[DVec3::X, 2.0 * DVec3::Y, 0.1 * DVec3::Z]])?;
+    /// assert_eq!(corner.normals, [[Vec3::X, Vec3::Y, Vec3::Z]]);
+    /// assert!(corner.set_normals(&[[DVec3::ZERO; 3]]).is_err());
+    /// # Ok::<(), isochore_mesh::AttributeError>(())
+    /// ```
     pub fn set_normals(&mut self, vectors: &[[DVec3; 3]]) -> Result<(), AttributeError> {
         let unit = |(triangle, corners): (usize, &[DVec3; 3])| match corners.map(DVec3::try_normalize) {
             [Some(a), Some(b), Some(c)] => Ok([a, b, c].map(|normal| normal.as_vec3())),
@@ -35,40 +48,41 @@ impl CornerAttributes {
     }
 }
 
-/// Why values are no attributes of a mesh.
+/// Errors when setting attributes of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum AttributeError {
-    /// A normal is zero or no number.
-    #[error("normals: one of triangle {triangle} has no direction")]
+    /// A normal is zero or not finite.
+    #[error("normals: a normal of triangle {triangle} is zero or not finite")]
     NoDirection {
         /// Index of the triangle.
         triangle: usize,
     },
-    /// Not each triangle has a material.
-    #[error("{found} triangles have materials, not {triangles}")]
+    /// The number of materials differs from the number of triangles.
+    #[error("{found} triangle materials were given for {triangles} triangles")]
     MaterialCount {
         /// Materials given.
         found: usize,
         /// Triangles of the mesh.
         triangles: usize,
     },
-    /// A triangle has a material that is not there.
-    #[error("triangle {triangle} has material {material} of {count}")]
+    /// A triangle refers to a material that does not exist.
+    #[error("material {material} of triangle {triangle} is out of range: there are {count} materials")]
     NoMaterial {
         /// Index of the triangle.
         triangle: usize,
         /// Its material.
         material: u32,
-        /// How many materials there are.
+        /// Number of materials.
         count: usize,
     },
 }
 
 impl TriMesh {
-    /// Takes the names of the materials, and for each triangle which of them it has.
+    /// Sets the names of the materials and the index of the material of each triangle.
     ///
     /// # Errors
-    /// [`AttributeError`]; the materials are then as they were before.
+    /// [`AttributeError`] if the number of indices differs from the number of triangles, or if an
+    /// index is out of range. The materials are then unchanged.
     pub fn set_materials(&mut self, names: Vec<String>, of_triangles: Vec<u32>) -> Result<(), AttributeError> {
         let (found, triangles, count) = (of_triangles.len(), self.triangles.len(), names.len());
         if found != triangles {
@@ -87,7 +101,7 @@ impl TriMesh {
 pub struct VertexAttributes {
     /// Linear RGBA, 0 to 1.
     pub colors: Vec<DVec4>,
-    /// Skin influences, joint index and weight; the weights of a vertex sum to one.
+    /// Skin influences: joint index and weight. The weights of a vertex sum to one.
     pub skin: Vec<Vec<(u32, f64)>>,
 }
 
@@ -97,7 +111,7 @@ mod tests {
     use crate::primitives::icosphere;
 
     #[test]
-    fn normals_get_unit_length_or_are_refused() {
+    fn set_normals_normalizes_or_refuses() {
         let mut corner = CornerAttributes::default();
         corner.set_normals(&[[DVec3::new(0.0, 3.0, 4.0), DVec3::X, DVec3::NEG_Z * 1e-9]]).unwrap();
         let unit = vec![[Vec3::new(0.0, 0.6, 0.8), Vec3::X, Vec3::NEG_Z]];
@@ -110,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn each_triangle_has_a_material_that_is_there() {
+    fn set_materials_refuses_missing_materials() {
         let mut mesh = icosphere(1.0, 0);
         let names = || vec!["clay".to_owned(), "glaze".to_owned()];
         let refused = mesh.set_materials(names(), vec![0; 19]);

@@ -1,4 +1,5 @@
-//! Angle-weighted normals (Thürmer and Wüthrich, "Computing vertex normals from polygonal facets", 1998).
+//! Angle-weighted normals (Thürmer and Wüthrich, "Computing vertex normals from polygonal facets",
+//! 1998).
 
 use glam::DVec3;
 
@@ -6,12 +7,19 @@ use crate::TriMesh;
 use crate::measure::{angle_between, triangle_normal};
 
 impl TriMesh {
-    /// Unit normals by vertex: the sum of the adjacent triangles' normals, each weighted by its angle at the vertex.
+    /// Unit normals by vertex: the sum of the adjacent triangles' normals, each weighted by its
+    /// angle at the vertex.
     ///
-    /// Zero for vertices without a triangle of positive area, and where the normals cancel.
+    /// The normal is zero at vertices without a triangle of positive area, and if the sum vanishes.
     ///
     /// # Panics
     /// If an index is out of range.
+    ///
+    /// ```
+    /// let ball = isochore_mesh::primitives::icosphere(2.0, 3);
+    /// let normals = ball.vertex_normals();
+    /// assert!(normals.iter().zip(&ball.positions).all(|(n, p)| n.dot(p.normalize()) > 0.999));
+    /// ```
     pub fn vertex_normals(&self) -> Vec<DVec3> {
         let mut normals = vec![DVec3::ZERO; self.positions.len()];
         for triangle in &self.triangles {
@@ -23,11 +31,12 @@ impl TriMesh {
         normals.into_iter().map(DVec3::normalize_or_zero).collect()
     }
 
-    /// Turns the shading normals of a mesh that was deformed from the positions `rest`, where it has any.
+    /// Rotates the shading normals, if any, of a mesh that was deformed from the positions `rest`.
     ///
-    /// The corners at a vertex that share a normal are turned together, by the smallest rotation that takes the
-    /// angle-weighted mean of their triangles' normals at rest to the present one; so hard edges stay hard, and normals
-    /// that were not such means keep their character. Where no triangle moved, normals keep their bits.
+    /// Corners at a vertex with equal normals rotate together, by the smallest rotation from the
+    /// angle-weighted mean of their triangles' normals at rest to the current mean. Hard edges
+    /// therefore stay hard, and authored normals keep their offset from the mean. If no triangle at
+    /// a corner moved, its normal keeps its bits.
     ///
     /// # Panics
     /// If an index is out of range, or `rest` has fewer positions than the mesh.
@@ -43,11 +52,11 @@ impl TriMesh {
         for triangle in self.triangles.iter().filter(|triangle| triangle.iter().any(|&vertex| has_moved(vertex))) {
             triangle.iter().for_each(|&vertex| is_near[vertex as usize] = true);
         }
-        let is_wanted = |&corner: &u32| is_near[self.triangles[corner as usize / 3][corner as usize % 3] as usize];
-        let mut corners: Vec<u32> = (0..3 * normals.len() as u32).filter(is_wanted).collect();
+        let is_affected = |&corner: &u32| is_near[self.triangles[corner as usize / 3][corner as usize % 3] as usize];
+        let mut corners: Vec<u32> = (0..3 * normals.len() as u32).filter(is_affected).collect();
         corners.sort_unstable_by_key(|&corner| (key(corner), corner));
 
-        let mut turned = normals.clone();
+        let mut rotated = normals.clone();
         for group in corners.chunk_by(|&a, &b| key(a) == key(b)) {
             let triangles = group.iter().map(|corner| &self.triangles[*corner as usize / 3]);
             if !triangles.flatten().any(|&vertex| has_moved(vertex)) {
@@ -61,12 +70,12 @@ impl TriMesh {
             };
             if let (Some(from), Some(to)) = (mean(rest), mean(&self.positions)) {
                 for &corner in group {
-                    let normal = &mut turned[corner as usize / 3][corner as usize % 3];
-                    *normal = turn(normal.as_dvec3(), from, to).as_vec3();
+                    let normal = &mut rotated[corner as usize / 3][corner as usize % 3];
+                    *normal = rotate(normal.as_dvec3(), from, to).as_vec3();
                 }
             }
         }
-        self.corner.normals = turned;
+        self.corner.normals = rotated;
     }
 }
 
@@ -77,12 +86,14 @@ fn weighted_normals(positions: &[DVec3], triangle: &[u32; 3]) -> [DVec3; 3] {
     [(b - a, c - a), (c - b, a - b), (a - c, b - c)].map(|(u, v)| normal * angle_between(u, v))
 }
 
-/// One plus the cosine of the angle between two directions below which they count as opposite, and a rotation between
-/// them has no axis. Larger, and normals that turn far jump; smaller, and the division loses all digits.
+/// Two directions are opposite if one plus the cosine of their angle is below this value; the axis
+/// of the rotation is then undefined. With a larger value normals that rotate far jump; with a
+/// smaller one the division loses all digits.
 const OPPOSITE: f64 = 1e-8;
 
-/// `normal` under the smallest rotation that takes the unit vector `from` to `to` (Rodrigues' formula).
-fn turn(normal: DVec3, from: DVec3, to: DVec3) -> DVec3 {
+/// `normal` rotated by the smallest rotation that takes the unit vector `from` to `to` (Rodrigues'
+/// formula).
+fn rotate(normal: DVec3, from: DVec3, to: DVec3) -> DVec3 {
     let cosine = from.dot(to);
     if 1.0 + cosine < OPPOSITE {
         return to;

@@ -1,50 +1,53 @@
-//! Attributes on a surface that was cut anew, interpolated once from the original mesh, corner by corner.
+//! Attributes of a remeshed surface, interpolated once from the original mesh, corner by corner.
 
 use glam::{DVec3, DVec4, Vec2};
 
 use super::subdivided::{interpolate, interpolate_influences, interpolate_normal, interpolate_uv};
 use crate::{CornerAttributes, TriMesh, VertexAttributes};
 
-/// Where a vertex or a corner comes from: a point of a triangle of another mesh.
+/// The source of a vertex or corner: a point in a triangle of another mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Origin {
     /// The triangle.
     pub triangle: u32,
-    /// Barycentric coordinates in it.
+    /// Barycentric coordinates in the triangle.
     pub weights: DVec3,
 }
 
-/// A surface whose vertices and corners come from points of a mesh, but whose triangles may lie across its triangles.
+/// A surface whose vertices and corners are points of a mesh, but whose triangles may cross its
+/// edges.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Resampling {
-    /// One position a vertex.
+    /// Position of each vertex.
     pub positions: Vec<DVec3>,
-    /// Vertex indices.
+    /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// By triangle the one of the mesh whose material it has.
+    /// For each triangle, the triangle of the mesh whose material it gets.
     pub parents: Vec<u32>,
-    /// By triangle where its corners take their attributes from.
+    /// For each triangle, the sources of its corner attributes.
     pub corners: Vec<[Origin; 3]>,
-    /// By vertex where it takes its attributes from.
+    /// For each vertex, the source of its attributes.
     pub vertices: Vec<VertexOrigin>,
 }
 
-/// Where a vertex takes its attributes from.
+/// The source of the attributes of a vertex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum VertexOrigin {
     /// A point of a triangle.
     Point(Origin),
-    /// A vertex, which may belong to no triangle.
+    /// A vertex, with or without triangles.
     Vertex(u32),
 }
 
 impl TriMesh {
-    /// The surface `resampling` with the attributes of this mesh. Values at corners of the mesh keep their bits; shading normals
-    /// and skin weights in between are made unit again, and no vertex gets more influences than the one of this mesh that has
-    /// most.
+    /// The surface `resampling` with the attributes of this mesh.
+    ///
+    /// Values at corners of this mesh keep their bits. Interpolated shading normals and skin
+    /// weights are normalized, and no vertex gets more influences than the maximum of this mesh.
     ///
     /// # Panics
-    /// If the resampling names a triangle that this mesh does not have, or its lists have not the lengths they should.
+    /// If the resampling refers to a triangle that this mesh does not have, or if its lists differ
+    /// in length.
     pub fn resampled(&self, resampling: &Resampling) -> TriMesh {
         let corners = &resampling.corners;
         TriMesh {
@@ -56,16 +59,17 @@ impl TriMesh {
                 colors: resample(&self.corner.colors, corners, interpolate),
             },
             vertex: self.resampled_vertices(resampling),
-            triangle_materials: match self.triangle_materials.is_empty() {
-                true => Vec::new(),
-                false => resampling.parents.iter().map(|&parent| self.triangle_materials[parent as usize]).collect(),
+            triangle_materials: if self.triangle_materials.is_empty() {
+                Vec::new()
+            } else {
+                resampling.parents.iter().map(|&parent| self.triangle_materials[parent as usize]).collect()
             },
             materials: self.materials.clone(),
             assets: self.assets.clone(),
         }
     }
 
-    /// The point of this mesh that `origin` names.
+    /// The point of this mesh at `origin`.
     ///
     /// # Panics
     /// If the mesh has no such triangle.
@@ -81,7 +85,8 @@ impl TriMesh {
         interpolate_uv(&self.corner.uvs[set][origin.triangle as usize], origin.weights)
     }
 
-    /// The color at `origin`: that of the corners, else that of the vertices; none where the mesh has neither.
+    /// The color at `origin`, from the colors of the corners or else of the vertices. `None` if the
+    /// mesh has neither.
     ///
     /// # Panics
     /// If the mesh has no such triangle.
@@ -118,7 +123,7 @@ impl TriMesh {
     }
 }
 
-/// Values at `corners`, interpolated in the triangles that hold them; none where there are no values.
+/// Values at `corners`, interpolated in the source triangles. Empty if `values` is empty.
 fn resample<T>(values: &[[T; 3]], corners: &[[Origin; 3]], interpolate: impl Fn(&[T; 3], DVec3) -> T) -> Vec<[T; 3]> {
     if values.is_empty() {
         return Vec::new();

@@ -1,22 +1,23 @@
-//! Skin influences as tables with one row a vertex, which is how most software has them.
+//! Skin influences as tables with one row per vertex, as in most other software.
 
 use super::VertexAttributes;
 
-/// The joints and weights of all vertices, row by row. Places that a vertex does not use have weight zero.
+/// Joints and weights of all vertices, row by row. Entries that a vertex does not use have weight
+/// zero.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SkinTable {
-    /// Places of a row: the most influences that any vertex has.
+    /// Entries per row: the largest number of influences of any vertex.
     pub per_vertex: usize,
-    /// Joints.
+    /// Joint indices.
     pub joints: Vec<u32>,
-    /// Their weights; those of a row sum to one, or to zero where no joint moves the vertex.
+    /// Weights. Each row sums to one, or to zero if no joint moves the vertex.
     pub weights: Vec<f64>,
 }
 
-/// Why numbers are no skin.
+/// Errors when setting a skin.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SkinError {
-    /// The tables have not one row for each vertex.
+    /// The tables do not have one row per vertex.
     #[error(
         "there are {joints} joints and {weights} weights for {vertices} vertices with {per_vertex} influences each"
     )]
@@ -30,7 +31,7 @@ pub enum SkinError {
         /// Influences of each.
         per_vertex: usize,
     },
-    /// A weight is negative or no number.
+    /// A weight is negative or not finite.
     #[error("the skin of vertex {vertex} has the weight {weight}, which must be finite and not negative")]
     Weight {
         /// Index of the vertex.
@@ -41,22 +42,33 @@ pub enum SkinError {
 }
 
 impl VertexAttributes {
-    /// The skin as tables; without rows where there is none.
+    /// The skin as tables, which are empty if there is no skin.
     pub fn skin_table(&self) -> SkinTable {
         let per_vertex = self.skin.iter().map(Vec::len).max().unwrap_or(0);
-        let places = self
+        let entries = self
             .skin
             .iter()
-            .flat_map(|influences| (0..per_vertex).map(|place| influences.get(place).copied().unwrap_or_default()));
-        let (joints, weights) = places.unzip();
+            .flat_map(|influences| (0..per_vertex).map(|column| influences.get(column).copied().unwrap_or_default()));
+        let (joints, weights) = entries.unzip();
         SkinTable { per_vertex, joints, weights }
     }
 
-    /// Takes the skin of `vertices` vertices from tables of `per_vertex` columns. Weights are divided by the sum of their row, and
-    /// those of zero left out, whatever their joint.
+    /// Sets the skin of `vertices` vertices from tables of `per_vertex` columns. Weights are
+    /// divided by the sum of their row. Influences of weight zero are dropped.
     ///
     /// # Errors
-    /// [`SkinError`]; the skin is then as it was before.
+    /// [`SkinError`] if the tables do not have one row per vertex, or if a weight is negative or
+    /// not finite. The skin is then unchanged.
+    ///
+    /// ```
+    /// use isochore_mesh::VertexAttributes;
+    ///
+    /// let mut vertex = VertexAttributes::default();
+    /// vertex.set_skin_table(2, 2, &[0, 1, 1, 0], &[3.0, 1.0, 0.5, 0.0])?;
+    /// assert_eq!(vertex.skin, [vec![(0, 0.75), (1, 0.25)], vec![(1, 1.0)]]);
+    /// assert_eq!(vertex.skin_table().weights, [0.75, 0.25, 1.0, 0.0]);
+    /// # Ok::<(), isochore_mesh::SkinError>(())
+    /// ```
     pub fn set_skin_table(
         &mut self,
         vertices: usize,
@@ -79,7 +91,7 @@ fn influences(vertex: usize, joints: &[u32], weights: &[f64]) -> Result<Vec<(u32
     if let Some(&weight) = weights.iter().find(|weight| !(weight.is_finite() && **weight >= 0.0)) {
         return Err(SkinError::Weight { vertex, weight });
     }
-    // The sum of the largest numbers there are overflows.
+    // Scale down weights whose sum overflows.
     let scale = if weights.iter().sum::<f64>().is_finite() { 1.0 } else { f64::MAX };
     let total: f64 = weights.iter().map(|weight| weight / scale).sum();
     let used = joints.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
@@ -91,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_come_back_with_sums_of_one() {
+    fn rows_are_normalized() {
         let mut vertex = VertexAttributes::default();
         vertex.set_skin_table(3, 2, &[7, 1, 2, 9, 4, 5], &[1.0, 3.0, 0.5, 0.0, 0.0, 0.0]).unwrap();
         assert_eq!(vertex.skin, [vec![(7, 0.25), (1, 0.75)], vec![(2, 1.0)], vec![]]);
@@ -103,14 +115,14 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_weights_do_not_overflow() {
+    fn largest_weights_do_not_overflow() {
         let mut vertex = VertexAttributes::default();
         vertex.set_skin_table(1, 2, &[0, 1], &[f64::MAX, f64::MAX]).unwrap();
         assert_eq!(vertex.skin, [vec![(0, 0.5), (1, 0.5)]]);
     }
 
     #[test]
-    fn what_is_no_skin_is_refused() {
+    fn rejects_invalid_tables() {
         let mut vertex = VertexAttributes { skin: vec![vec![(3, 1.0)]], ..Default::default() };
         let mut refuse = |per_vertex, joints: &[u32], weights: &[f64]| {
             let error = vertex.set_skin_table(1, per_vertex, joints, weights).unwrap_err();

@@ -1,8 +1,9 @@
 //! Splitting to a longest edge.
 //!
-//! Whether and where an edge is split depends on that edge alone: into halves, until they are short enough. So both triangles at
-//! an edge agree without knowing each other, and every triangle is split on its own, in parallel and without rounds over the
-//! mesh: into two, three or four by the number of its long edges, and so on.
+//! The split of an edge depends only on that edge: it is halved until the parts are short enough.
+//! The two triangles at an edge therefore agree without communication, and every triangle is split
+//! independently and in parallel, without repeated passes over the mesh. A triangle is split into
+//! two, three or four parts by the number of its long edges, recursively.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -11,35 +12,43 @@ use rayon::prelude::*;
 
 use crate::{Cancelled, MeshError, Monitor, SubTriangle, Subdivision, Topology, TriMesh, TriangleSide, TriangleSplit};
 
-/// Triangles that one task splits. Larger balances worse and hears a cancellation later; smaller allocates more often.
+/// Triangles that one task splits. A larger value balances worse and delays cancellation; a smaller
+/// one allocates more often.
 const CHUNK: usize = 2048;
 
-/// An edge is halved this often at most; more would pass any number of triangles.
+/// Largest number of times that an edge is halved. More would exceed any limit of triangles.
 const MOST_HALVINGS: u32 = 30;
 
-/// Why a mesh is not split.
+/// Errors when splitting a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SplitError {
     /// An index is out of range or a coordinate not finite.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The longest edge allowed is not a positive number.
+    /// The longest allowed edge is not a positive finite number.
     #[error("the longest edge must be a positive number, not {0}")]
     Length(f64),
-    /// There would be too many triangles.
+    /// The result would have too many triangles.
     #[error("an edge length of {length} takes more than {limit} triangles")]
     TooManyTriangles {
-        /// The longest edge allowed.
+        /// The longest allowed edge.
         length: f64,
         /// The limit.
         limit: usize,
     },
-    /// The monitor stopped the work.
+    /// The monitor cancelled the operation.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// A corner of a triangle that may be split on.
+/// The longest edge and the number of triangles that the result may have.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    longest: f64,
+    triangles: usize,
+}
+
+/// A corner of a part of a triangle.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     vertex: u32,
@@ -48,17 +57,19 @@ struct Corner {
     position: DVec3,
 }
 
-/// A stretch of an edge of equal parts, a power of two of them, between which its vertices are numbered one after the other.
+/// A section of an edge that is divided into equal parts, a power of two of them. The vertices
+/// between the parts are numbered consecutively.
 #[derive(Debug, Clone, Copy)]
 struct Side {
-    /// The vertex behind the first part of the whole edge.
+    /// The vertex at the end of the first part of the whole edge.
     first: u32,
-    /// Numbers of the parts between which it runs, in either direction.
+    /// The section runs from the start of part `from` to the start of part `to`, in either
+    /// direction.
     from: u32,
     to: u32,
 }
 
-/// A triangle that may be split on, with its sides 01, 12 and 20.
+/// A part of a triangle that may be split further, with its sides 01, 12 and 20.
 #[derive(Debug, Clone, Copy)]
 struct Part {
     corners: [Corner; 3],
@@ -69,30 +80,52 @@ struct Part {
 #[derive(Debug)]
 struct SplitEdges {
     topology: Topology,
-    /// By edge, the first of the vertices on it, from its smaller end on, counted from the mesh's own; then their number.
+    /// For each edge, the first of the new vertices on it, ordered from its smaller end. Counted
+    /// from the end of the original vertices, with the total as last entry.
     first: Vec<u32>,
-    /// The vertices of the mesh, then those on its edges.
+    /// The original vertices, then those on edges.
     positions: Vec<DVec3>,
 }
 
-/// What became of some triangles.
+/// The parts of some triangles.
 #[derive(Debug, Default)]
 struct Chunk {
     triangles: Vec<SubTriangle>,
-    /// Vertices inside triangles, numbered behind those on edges.
+    /// Vertices inside triangles, numbered after those on edges.
     inner: Vec<DVec3>,
 }
 
+impl Limits {
+    /// An upper bound of the number of vertices.
+    #[inline(always)]
+    fn vertices(self) -> usize {
+        self.triangles.saturating_mul(3).min(u32::MAX as usize)
+    }
+}
+
 impl TriMesh {
-    /// Splits triangles until no edge is longer than `longest`, model units, up to rounding. No point of the surface moves.
+    /// Splits triangles until no edge is longer than `longest`, in model units and up to rounding.
+    /// No point of the surface moves.
     ///
-    /// Edges are halved until they are short enough. Of the two ways to split a triangle at two of its edges the one with the
-    /// shorter diagonal is taken. The result has the same bits for any number of threads. While it works it holds what it
-    /// returns twice, 88 bytes a triangle and 24 a vertex each time, and 60 bytes a triangle of the mesh: measured, about 200
-    /// bytes for each triangle that there is in the end.
+    /// Edges are halved until they are short enough. A triangle that is split at two edges gets the
+    /// shorter of the two possible diagonals. The result has the same bits for any number of
+    /// threads. Peak memory is twice the result, at 88 bytes per triangle and 24 per vertex, plus
+    /// 60 bytes per original triangle: about 200 bytes per resulting triangle as measured.
     ///
     /// # Errors
-    /// [`SplitError`]; `limit` is the largest number of triangles allowed.
+    /// [`SplitError`] if `longest` is not a positive finite number, the mesh is invalid, the result
+    /// would have more than `limit` triangles, or the monitor cancels.
+    ///
+    /// ```
+    /// use isochore_mesh::{NoProgress, primitives};
+    ///
+    /// let ball = primitives::icosphere(1.0, 1);
+    /// let split = ball.split_to_length(0.1, 100_000, &NoProgress)?;
+    /// let fine = ball.subdivided(&split);
+    /// assert!(fine.edge_lengths().unwrap().max <= 0.1 * (1.0 + 1e-12));
+    /// assert!((fine.volume() - ball.volume()).abs() < 1e-12);
+    /// # Ok::<(), isochore_mesh::SplitError>(())
+    /// ```
     pub fn split_to_length(
         &self,
         longest: f64,
@@ -104,7 +137,8 @@ impl TriMesh {
         }
         self.check_valid()?;
         let too_many = || SplitError::TooManyTriangles { length: longest, limit };
-        let edges = SplitEdges::new(self, longest, limit).ok_or_else(too_many)?;
+        let limits = Limits { longest, triangles: limit };
+        let edges = SplitEdges::new(self, limits).ok_or_else(too_many)?;
         let count = AtomicUsize::new(0);
         let chunks: Vec<Chunk> = (0..self.triangles.len().div_ceil(CHUNK))
             .into_par_iter()
@@ -112,7 +146,7 @@ impl TriMesh {
                 let begin = chunk * CHUNK;
                 let end = self.triangles.len().min(begin + CHUNK);
                 monitor.check("split", begin as f64 / self.triangles.len() as f64)?;
-                self.split_chunk(begin..end, &edges, longest, limit, &count).ok_or_else(too_many)
+                self.split_chunk(begin..end, &edges, limits, &count).ok_or_else(too_many)
             })
             .collect::<Result<_, SplitError>>()?;
 
@@ -135,59 +169,61 @@ impl TriMesh {
         Ok(subdivision)
     }
 
-    /// None when there would be too many triangles.
+    /// Splits the triangles of `range`. `None` if there would be too many triangles.
     fn split_chunk(
         &self,
         range: std::ops::Range<usize>,
         edges: &SplitEdges,
-        longest: f64,
-        limit: usize,
+        limits: Limits,
         count: &AtomicUsize,
     ) -> Option<Chunk> {
-        // What the lengths of the edges let expect, so that little is moved.
+        // Reserve by an estimate from the edge lengths, so that the list rarely reallocates.
         let expected: usize = range.clone().map(|triangle| edges.expected_triangles(triangle)).sum();
-        let mut chunk = Chunk { triangles: Vec::with_capacity(expected.min(limit)), inner: Vec::new() };
+        let mut chunk = Chunk { triangles: Vec::with_capacity(expected.min(limits.triangles)), inner: Vec::new() };
         let mut pending = Vec::new();
         for triangle in range {
             let whole = edges.part(self, triangle);
-            match whole.sides.iter().any(Side::is_long) {
-                true => pending.push(whole),
-                false => chunk.triangles.push(finished(whole.corners, triangle as u32)),
+            if whole.sides.iter().any(Side::is_long) {
+                pending.push(whole)
+            } else {
+                chunk.triangles.push(finished(whole.corners, triangle as u32))
             }
             while let Some(part) = pending.pop() {
-                let middles = [0, 1, 2].map(|side| part.middle(side, edges, &chunk.inner));
-                let split = TriangleSplit { corners: part.corners, sides: part.sides, middles };
+                let midpoints = [0, 1, 2].map(|side| part.midpoint(side, edges, &chunk.inner));
+                let split = TriangleSplit { corners: part.corners, sides: part.sides, midpoints };
                 let distance_squared = |a: &Corner, b: &Corner| a.position.distance_squared(b.position);
-                let inner_side = |a: &Corner, b: &Corner| edges.inner_side(a, b, longest, limit, &mut chunk.inner);
+                let inner_side = |a: &Corner, b: &Corner| edges.inner_side(a, b, limits, &mut chunk.inner);
                 split.parts(distance_squared, inner_side, |corners, sides| {
-                    // Most parts are done at once.
-                    match sides.iter().any(Side::is_long) {
-                        true => pending.push(Part { corners, sides }),
-                        false => chunk.triangles.push(finished(corners, triangle as u32)),
+                    // Most parts need no further split.
+                    if sides.iter().any(Side::is_long) {
+                        pending.push(Part { corners, sides })
+                    } else {
+                        chunk.triangles.push(finished(corners, triangle as u32))
                     }
                 })?;
-                if chunk.triangles.len() + pending.len() > limit {
+                if chunk.triangles.len() + pending.len() > limits.triangles {
                     return None;
                 }
             }
         }
         let counted = chunk.triangles.len();
-        (count.fetch_add(counted, Ordering::Relaxed) + counted <= limit).then_some(chunk)
+        (count.fetch_add(counted, Ordering::Relaxed) + counted <= limits.triangles).then_some(chunk)
     }
 }
 
 impl SplitEdges {
-    /// None when there would be too many triangles.
-    fn new(mesh: &TriMesh, longest: f64, limit: usize) -> Option<Self> {
+    /// Splits all edges. `None` if there would be too many triangles.
+    fn new(mesh: &TriMesh, limits: Limits) -> Option<Self> {
         let topology = Topology::of(mesh);
-        let parts_of = |&[a, b]: &[u32; 2]| parts(mesh.positions[a as usize], mesh.positions[b as usize], longest);
+        let position = |vertex: u32| mesh.positions[vertex as usize];
+        let parts_of = |&[a, b]: &[u32; 2]| parts(position(a), position(b), limits.longest);
         let parts: Vec<Option<u32>> = topology.edges.par_iter().map(parts_of).collect();
         let mut first = Vec::with_capacity(parts.len() + 1);
         let mut next: usize = 0;
         for parts in parts {
             first.push(next as u32);
             next += parts? as usize - 1;
-            if next > limit.saturating_mul(3).min(u32::MAX as usize) {
+            if next > limits.vertices() {
                 return None;
             }
         }
@@ -201,13 +237,14 @@ impl SplitEdges {
         Some(Self { topology, first, positions })
     }
 
-    /// A new edge inside a triangle of the mesh, its vertices added to `inner`. None when there would be too many.
+    /// A new edge inside a triangle of the mesh, whose vertices are added to `inner`. `None` if
+    /// there would be too many.
     #[inline(always)]
-    fn inner_side(&self, a: &Corner, b: &Corner, longest: f64, limit: usize, inner: &mut Vec<DVec3>) -> Option<Side> {
-        let parts = parts(a.position, b.position, longest)?;
+    fn inner_side(&self, a: &Corner, b: &Corner, limits: Limits, inner: &mut Vec<DVec3>) -> Option<Side> {
+        let parts = parts(a.position, b.position, limits.longest)?;
         let first = self.positions.len() + inner.len();
         if parts > 1 {
-            if first + parts as usize > limit.saturating_mul(3).min(u32::MAX as usize) {
+            if first + parts as usize > limits.vertices() {
                 return None;
             }
             inner.extend(between(a.position, b.position, parts));
@@ -215,7 +252,8 @@ impl SplitEdges {
         Some(Side { first: first as u32, from: 0, to: parts })
     }
 
-    /// About the number of triangles that one of the mesh is split into: exact where all its sides have the same parts.
+    /// An estimate of the number of parts of a triangle, exact if its sides have equally many
+    /// parts.
     fn expected_triangles(&self, triangle: usize) -> usize {
         let parts = |edge: u32| (self.first[edge as usize + 1] - self.first[edge as usize] + 1) as usize;
         let [a, b, c] = self.topology.triangle_edges(triangle).map(parts);
@@ -223,7 +261,7 @@ impl SplitEdges {
         longest.saturating_mul((a + b + c - longest).div_ceil(2))
     }
 
-    /// A triangle of the mesh, whole.
+    /// A whole triangle of the mesh.
     fn part(&self, mesh: &TriMesh, triangle: usize) -> Part {
         let vertices = mesh.triangles[triangle];
         let position = |corner: usize| mesh.positions[vertices[corner] as usize];
@@ -246,9 +284,10 @@ impl SplitEdges {
 }
 
 impl Part {
-    /// The middle of a side, if that is to be split. `inner` are the vertices inside triangles.
+    /// The midpoint of a side, or `None` if the side is short. `inner` holds the vertices inside
+    /// triangles.
     #[inline(always)]
-    fn middle(&self, side: usize, edges: &SplitEdges, inner: &[DVec3]) -> Option<Corner> {
+    fn midpoint(&self, side: usize, edges: &SplitEdges, inner: &[DVec3]) -> Option<Corner> {
         let Side { first, from, to } = self.sides[side];
         if !self.sides[side].is_long() {
             return None;
@@ -264,7 +303,7 @@ impl Part {
 }
 
 impl Side {
-    /// Whether it is to be split.
+    /// Whether the side must be split.
     #[inline(always)]
     fn is_long(&self) -> bool {
         self.from.abs_diff(self.to) > 1
@@ -288,13 +327,13 @@ impl TriangleSide for Side {
     }
 }
 
-/// A triangle that is not split on.
+/// A part that is not split further.
 #[inline(always)]
 fn finished([a, b, c]: [Corner; 3], parent: u32) -> SubTriangle {
     SubTriangle { vertices: [a.vertex, b.vertex, c.vertex], parent, corners: [a.weights, b.weights, c.weights] }
 }
 
-/// The equal parts into which an edge is halved until they are short enough; none beyond [`MOST_HALVINGS`].
+/// The number of equal parts into which an edge is halved. `None` beyond [`MOST_HALVINGS`].
 #[inline(always)]
 fn parts(a: DVec3, b: DVec3, longest: f64) -> Option<u32> {
     let length = a.distance(b);
@@ -302,12 +341,12 @@ fn parts(a: DVec3, b: DVec3, longest: f64) -> Option<u32> {
     Some(1 << halvings)
 }
 
-/// The points between this power of two of equal parts of an edge.
+/// The points between `parts` equal parts of an edge, where `parts` is a power of two.
 #[inline(always)]
 fn between(a: DVec3, b: DVec3, parts: u32) -> impl Iterator<Item = DVec3> {
-    // The shares are exact.
-    let share = move |part: u32| f64::from(part) / f64::from(parts);
-    (1..parts).map(move |part| a * (1.0 - share(part)) + b * share(part))
+    // The fractions are exact.
+    let fraction = move |part: u32| f64::from(part) / f64::from(parts);
+    (1..parts).map(move |part| a * (1.0 - fraction(part)) + b * fraction(part))
 }
 
 #[cfg(test)]

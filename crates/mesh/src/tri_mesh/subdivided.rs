@@ -6,10 +6,10 @@ use glam::{DVec3, Vec2, Vec3};
 
 use crate::{CornerAttributes, TriMesh, VertexAttributes};
 
-/// A finer tessellation of a mesh: its triangles, each inside one triangle of the original.
+/// A finer tessellation of a mesh, whose triangles are each inside one triangle of the original.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Subdivision {
-    /// Positions of all vertices; those of the original come first, unchanged.
+    /// Positions of all vertices. The original ones come first, unchanged.
     pub positions: Vec<DVec3>,
     /// The triangles.
     pub triangles: Vec<SubTriangle>,
@@ -20,22 +20,23 @@ pub struct Subdivision {
 pub struct SubTriangle {
     /// Indices into the positions of the subdivision.
     pub vertices: [u32; 3],
-    /// The original triangle that holds this one.
+    /// The original triangle that contains this one.
     pub parent: u32,
     /// Barycentric coordinates of the three corners in the parent.
     pub corners: [DVec3; 3],
 }
 
 impl TriMesh {
-    /// This mesh with the positions and triangles of `subdivision`, and its own attributes interpolated onto them.
+    /// The subdivided mesh, with the attributes of this mesh interpolated onto it.
     ///
-    /// Every attribute is interpolated once, in the original triangle that holds the corner. Shading normals and skin
-    /// weights are made unit again, and no vertex gets more skin influences than the vertex of this mesh that has most.
-    /// Attributes of original vertices and materials are kept as they are. Equal values on the two sides of an original
-    /// edge stay equal, so no seam opens.
+    /// Every attribute is interpolated once, in the original triangle that contains the corner.
+    /// Shading normals and skin weights are normalized, and no vertex gets more skin influences
+    /// than the maximum of this mesh. Attributes of original vertices and materials are unchanged.
+    /// Equal values on the two sides of an original edge stay equal, so no seam opens.
     ///
     /// # Panics
-    /// If the subdivision names a parent that this mesh does not have, or a vertex that it does not have itself.
+    /// If the subdivision refers to a parent that this mesh does not have, or to a vertex out of
+    /// range.
     pub fn subdivided(&self, subdivision: &Subdivision) -> TriMesh {
         let children = &subdivision.triangles;
         let materials = &self.triangle_materials;
@@ -48,9 +49,10 @@ impl TriMesh {
                 colors: interpolate_corners(&self.corner.colors, children, interpolate),
             },
             vertex: self.subdivided_vertices(subdivision),
-            triangle_materials: match materials.is_empty() {
-                true => Vec::new(),
-                false => children.iter().map(|child| materials[child.parent as usize]).collect(),
+            triangle_materials: if materials.is_empty() {
+                Vec::new()
+            } else {
+                children.iter().map(|child| materials[child.parent as usize]).collect()
             },
             materials: self.materials.clone(),
             assets: self.assets.clone(),
@@ -64,7 +66,8 @@ impl TriMesh {
             return VertexAttributes { colors, skin };
         }
         let most_influences = skin.iter().map(Vec::len).max().unwrap_or(0);
-        // A new vertex takes its attributes from the first triangle that uses it; the others would agree up to rounding.
+        // A new vertex gets its attributes from the first triangle that uses it. Others agree up to
+        // rounding.
         let mut origins = vec![None; subdivision.positions.len().saturating_sub(original)];
         for child in &subdivision.triangles {
             for (&vertex, &weights) in child.vertices.iter().zip(&child.corners) {
@@ -74,7 +77,7 @@ impl TriMesh {
             }
         }
         for origin in origins {
-            // A new vertex that no triangle uses has nothing to take attributes from.
+            // A new vertex without triangles gets default attributes.
             let parent = origin.map(|(parent, weights)| (self.triangles[parent as usize].map(|v| v as usize), weights));
             if !colors.is_empty() {
                 let color = parent.map(|(corners, weights)| interpolate(&corners.map(|v| colors[v]), weights));
@@ -91,8 +94,8 @@ impl TriMesh {
     }
 }
 
-/// Barycentric combination. Corners of weight zero are left out, so that a value on an edge depends on that edge alone
-/// and has the same bits seen from both of its triangles.
+/// Barycentric combination. Corners of weight zero are skipped, so that a value on an edge depends
+/// only on that edge and has the same bits in both of its triangles.
 pub(super) fn interpolate<T>(corners: &[T; 3], weights: DVec3) -> T
 where
     T: Copy + Default + PartialEq + Add<Output = T> + Mul<f64, Output = T>,
@@ -121,12 +124,12 @@ fn interpolate_corners<T>(
     children.iter().map(at).collect()
 }
 
-/// Texture coordinates between three, rounded once.
+/// Interpolated texture coordinates, rounded once.
 pub(super) fn interpolate_uv(corners: &[Vec2; 3], weights: DVec3) -> Vec2 {
     interpolate(&corners.map(|uv| uv.as_dvec2()), weights).as_vec2()
 }
 
-/// The unit normal between three; where they cancel, that of the heaviest corner, which is as good as any.
+/// The interpolated unit normal, or that of the corner of largest weight if the sum vanishes.
 pub(super) fn interpolate_normal(corners: &[Vec3; 3], weights: DVec3) -> Vec3 {
     if let Some(kept) = weights.to_array().iter().position(|&weight| weight == 1.0) {
         return corners[kept];

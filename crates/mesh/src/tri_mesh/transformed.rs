@@ -5,9 +5,18 @@ use glam::{DQuat, DVec3};
 use crate::TriMesh;
 
 impl TriMesh {
-    /// This mesh scaled about the origin, then rotated, then translated. Shading normals are rotated.
+    /// The mesh scaled about the origin, then rotated, then translated. Shading normals are
+    /// rotated.
     ///
-    /// `scale` is meant to be positive; a negative one turns the triangles over so that outside stays outside.
+    /// A negative `scale` reverses the triangles, so that the outside stays outside.
+    ///
+    /// ```
+    /// use glam::{DQuat, DVec3};
+    ///
+    /// let ball = isochore_mesh::primitives::icosphere(1.0, 1);
+    /// let moved = ball.transformed(2.0, DQuat::IDENTITY, DVec3::X);
+    /// assert!((moved.volume() - 8.0 * ball.volume()).abs() < 1e-13);
+    /// ```
     pub fn transformed(&self, scale: f64, rotation: DQuat, translation: DVec3) -> TriMesh {
         let mut mesh = self.clone();
         for position in &mut mesh.positions {
@@ -16,7 +25,7 @@ impl TriMesh {
         for normal in mesh.corner.normals.iter_mut().flatten() {
             *normal = (rotation * normal.as_dvec3()).as_vec3();
         }
-        // A point reflection negates normals as well as winding, which is what turning over does to both.
+        // A point reflection reverses both winding and normals, as `flipped` does.
         if scale < 0.0 { mesh.flipped() } else { mesh }
     }
 }

@@ -1,36 +1,39 @@
-//! How a triangle is split at the middles of its sides: into two, three or four parts by the number of sides that are.
+//! The pattern that splits a triangle at the midpoints of its sides: into two, three or four parts
+//! by the number of split sides.
 //!
-//! All that splits triangles takes this pattern, each with corners and sides of its own kind.
+//! It is generic over the types of corners and sides, because all code that splits triangles uses
+//! it.
 
-/// A side of a triangle on its way around it.
+/// A directed side of a triangle.
 pub trait TriangleSide: Copy {
-    /// The half that comes first.
+    /// The first half.
     fn first(self) -> Self;
 
-    /// The half that comes second.
+    /// The second half.
     fn second(self) -> Self;
 
-    /// The same, run along in the other direction.
+    /// The side in the opposite direction.
     fn reversed(self) -> Self;
 }
 
-/// A triangle about to be split, with its sides 01, 12 and 20, and the middles of those of them that are.
+/// A triangle to split, with the midpoints of the sides to split.
 #[derive(Debug, Clone, Copy)]
 pub struct TriangleSplit<C, S> {
     /// The corners.
     pub corners: [C; 3],
     /// The sides 01, 12 and 20.
     pub sides: [S; 3],
-    /// The middle of each side, if it is split there.
-    pub middles: [Option<C>; 3],
+    /// The midpoint of each side, or `None` for a side that is not split.
+    pub midpoints: [Option<C>; 3],
 }
 
 impl<C: Copy, S: TriangleSide> TriangleSplit<C, S> {
-    /// Calls `push` for the corners and sides of each part, turned as the whole. A triangle that is not split has no parts.
+    /// Calls `push` with the corners and sides of each part, in the orientation of the triangle.
+    /// Without midpoints there are no parts.
     ///
-    /// Of the two ways to cut the quadrilateral that is left behind two middles, the one with the shorter diagonal is taken, by
-    /// `distance_squared`. `inner_side` is asked once for every side between two parts, seen from one of them; where it has none,
-    /// the rest is left out and there is no result.
+    /// If two sides are split, the remaining quadrilateral is cut along its shorter diagonal by
+    /// `distance_squared`. `inner_side` is called once for every side between two parts. If it
+    /// returns `None`, so does this function, and the remaining parts are dropped.
     #[inline(always)]
     pub fn parts(
         &self,
@@ -38,16 +41,16 @@ impl<C: Copy, S: TriangleSide> TriangleSplit<C, S> {
         mut inner_side: impl FnMut(&C, &C) -> Option<S>,
         mut push: impl FnMut([C; 3], [S; 3]),
     ) -> Option<()> {
-        // Turned so that the cases need one pattern each.
-        let turns = match self.middles {
+        // Rotate the corners so that each case needs only one pattern.
+        let rotation = match self.midpoints {
             [Some(_), None, None] | [Some(_), Some(_), None] | [Some(_), Some(_), Some(_)] => 0,
             [None, Some(_), _] => 1,
             _ => 2,
         };
-        let [i, j, k] = [turns, (turns + 1) % 3, (turns + 2) % 3];
+        let [i, j, k] = [rotation, (rotation + 1) % 3, (rotation + 2) % 3];
         let [a, b, c] = [self.corners[i], self.corners[j], self.corners[k]];
         let [ab, bc, ca] = [self.sides[i], self.sides[j], self.sides[k]];
-        match [self.middles[i], self.middles[j], self.middles[k]] {
+        match [self.midpoints[i], self.midpoints[j], self.midpoints[k]] {
             [Some(p), Some(q), Some(r)] => {
                 let (pq, qr, rp) = (inner_side(&p, &q)?, inner_side(&q, &r)?, inner_side(&r, &p)?);
                 push([p, q, r], [pq, qr, rp]);

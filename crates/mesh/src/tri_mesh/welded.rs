@@ -4,21 +4,33 @@ use crate::TriMesh;
 use crate::position_table::{PositionTable, with_repeated_hash};
 
 impl TriMesh {
-    /// This mesh with all vertices at the same position made one, as files need that split vertices at seams.
+    /// Merges all vertices at equal positions. This undoes the vertex splits of file formats.
     ///
-    /// Vertices keep the order of their first occurrence. Vertex colors that differ at one position move to the
-    /// corners; of differing skin influences the first ones stay. Triangles that lose a side are left out: the surface
-    /// is the same without them.
+    /// Vertices keep the order of their first occurrence. Vertex colors that differ at one position
+    /// move to the corners. If skin influences differ, the first ones are kept. Triangles that
+    /// collapse are dropped, which does not change the surface.
     ///
     /// # Panics
     /// If an index is out of range.
+    ///
+    /// ```
+    /// use isochore_mesh::{TriMesh, primitives};
+    ///
+    /// let ball = primitives::icosphere(1.0, 1);
+    /// // Three separate vertices for every triangle.
+    /// let positions = (0..80).flat_map(|triangle| ball.corners(triangle)).collect();
+    /// let soup = TriMesh::new(positions, (0..80).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect());
+    /// assert!(!soup.check().is_closed());
+    /// assert!(soup.welded().check().is_closed());
+    /// ```
     pub fn welded(self) -> TriMesh {
         self.welded_where(|_| true)
     }
 
-    /// This mesh with the vertices of its boundary welded where they are at the same position.
+    /// Merges boundary vertices at equal positions.
     ///
-    /// Unlike [`welded`](Self::welded) it leaves alone surfaces that touch each other in vertices they keep apart.
+    /// Unlike [`welded`](Self::welded), it does not join closed surfaces that touch at separate
+    /// vertices.
     ///
     /// # Panics
     /// If an index is out of range.
@@ -39,7 +51,8 @@ impl TriMesh {
         if firsts == suspects {
             return self;
         }
-        // First the old number of the first vertex at each one's position, then its new number.
+        // Maps each vertex to the first vertex at its position, and from the loop on to its new
+        // index.
         let mut merged: Vec<u32> = (0..self.positions.len() as u32).collect();
         suspects.iter().zip(firsts).for_each(|(&vertex, first)| merged[vertex as usize] = first);
         let mut kept: Vec<u32> = Vec::with_capacity(merged.len());
@@ -81,7 +94,7 @@ impl TriMesh {
         keep(&mut self.vertex.skin, kept);
     }
 
-    /// Removes triangles that use a vertex twice, together with what their corners carry.
+    /// Removes triangles that use a vertex twice, with their attributes.
     fn drop_collapsed_triangles(&mut self) {
         let collapsed: Vec<bool> = self.triangles.iter().map(|&[a, b, c]| a == b || b == c || c == a).collect();
         if !collapsed.contains(&true) {
@@ -99,9 +112,9 @@ impl TriMesh {
     }
 }
 
-/// Which vertices are at an edge of one triangle alone; none where there is no such edge.
+/// Flags the vertices of edges with only one triangle. `None` if there is no such edge.
 fn vertices_at_boundary(triangles: &[[u32; 3]], vertices: usize) -> Option<Vec<bool>> {
-    // Other ends of the edges at each vertex that lead to a larger one, by counting sort.
+    // Counting sort of all edges by their smaller vertex.
     let sides = || triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).map(|(a, b)| (a.min(b), a.max(b)));
     let mut ends = vec![0_u32; vertices + 1];
     sides().for_each(|(smaller, _)| ends[smaller as usize + 1] += 1);
@@ -112,7 +125,7 @@ fn vertices_at_boundary(triangles: &[[u32; 3]], vertices: usize) -> Option<Vec<b
         others[*next as usize] = larger;
         *next += 1;
     }
-    // Each end has moved on to that of its vertex's group.
+    // After the sort, `ends` holds the end of each vertex's group.
     let mut at_boundary = Vec::new();
     let mut start = 0;
     for (vertex, &end) in ends[..vertices].iter().enumerate() {

@@ -77,7 +77,7 @@ impl Tessellation {
         let split = TriangleSplit {
             corners: [0, 1, 2].map(|index| corner(vertices[index], weights[index])),
             sides: whole.map(Side::Whole),
-            middles: [0, 1, 2].map(middle),
+            midpoints: [0, 1, 2].map(middle),
         };
         let mut parts: Vec<([Corner; 3], [Side; 3])> = Vec::with_capacity(4);
         let distance_squared = |a: &Corner, b: &Corner| a.image.distance_squared(b.image);

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{ClosedMesh, NoProgress, primitives};
 
-/// Sizes of the terms of a sum of this many rounded numbers, relative to the sum: far more than it takes.
+/// Bound of the relative rounding error of the sums below, with a large margin.
 const ROUNDING: f64 = 1e-12;
 
 fn uneven() -> TriMesh {
@@ -13,7 +13,7 @@ fn uneven() -> TriMesh {
 }
 
 #[test]
-fn no_edge_is_longer_and_nothing_moves() {
+fn respects_the_longest_edge_and_keeps_the_surface() {
     let mesh = uneven();
     for longest in [2.0, 0.3, 0.1, 0.02] {
         let split = mesh.split_to_length(longest, 10_000_000, &NoProgress).unwrap();
@@ -68,7 +68,7 @@ fn same_bits_for_any_number_of_threads() {
 }
 
 #[test]
-fn what_cannot_be_done_is_an_error() {
+fn rejects_invalid_lengths_limits_and_meshes() {
     let mesh = uneven();
     for length in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(mesh.split_to_length(length, 1000, &NoProgress), Err(SplitError::Length(_))));
