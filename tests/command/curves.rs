@@ -210,7 +210,7 @@ fn rejects_invalid_sweeps() {
     for (arguments, parts) in [
         (&["--profile", "one.csv", "-o", "a.obj"][..], &["one.csv", "at least 2 rows"][..]),
         (&["--profile", "curve.csv", "-o", "a.obj"], &["curve.csv", "row 1 has 3 columns; expected 2"]),
-        (&["--profile", "profile.csv", "-o", "a.iges"], &["a.iges", "known are"]),
+        (&["--profile", "profile.csv", "-o", "a.iges"], &["a.iges", "supported are"]),
         (&["--profile", "profile.csv", "-o", "a.obj", "--caps"], &["--caps", "--profile-closed"]),
         (
             &["--profile", "profile.csv", "-o", "a.obj", "--bezier", "--profile-closed"],
