@@ -1,8 +1,8 @@
 //! Mesh files: OBJ, glTF, GLB, PLY, STL and OFF.
 //!
-//! [`read`] and [`write`] choose the format by the file extension. [`read_bytes`] and [`write_to`]
-//! work without files. [`Format`] lists which attributes each format can store. [`PointStream`]
-//! processes point files that do not fit into memory.
+//! [`read`] and [`write`](fn@write) choose the format by the file extension. [`read_bytes`] and
+//! [`write_to`] work without files. [`Format`] lists which attributes each format can store.
+//! [`PointStream`] processes point files that do not fit into memory.
 //!
 //! ```
 //! use isochore_mesh::io::{self, Format};
