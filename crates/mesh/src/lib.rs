@@ -4,45 +4,44 @@
 //! # Terms
 //!
 //! - A [`TriMesh`] has *vertices* (positions and topology), *triangles* (three vertex indices,
-//! counter-clockwise seen from outside) and *corners* (the use of a vertex by a triangle).
+//!   counter-clockwise seen from outside) and *corners* (the use of a vertex by a triangle).
 //! - A *seam* is an edge whose two sides have different corner attributes, such as texture
-//! coordinates. Attributes are stored on corners, so a seam never opens the surface.
+//!   coordinates. Attributes are stored on corners, so a seam never opens the surface.
 //! - A *half-edge* `3 t + k` is side `k` of triangle `t`. Its *twin* is the half-edge on the other
-//! side of the edge. The triangles around a vertex form a *fan*.
+//!   side of the edge. The triangles around a vertex form a *fan*.
 //! - A mesh is *valid* if all indices are in range and all positions finite. It is *closed* if
-//! every edge has two triangles; a [`ClosedMesh`] is proven to be closed and consistently
-//! oriented.
+//!   every edge has two triangles; a [`ClosedMesh`] is proven to be closed and consistently
+//!   oriented.
 //! - A *signed distance* is negative inside. Distances are evaluated for a [`PointBlock`] of
-//! [`LANES`] points at a time.
+//!   [`LANES`] points at a time.
 //!
 //! Lengths are in model units, angles in radians, coordinates are `f64`.
 //!
 //! # Invariants
 //!
 //! - The same input yields the same bits, for any number of threads and any width of vector
-//! registers.
+//!   registers.
 //! - The volume is the compensated sum over triangles of a · (b × c) / 6, relative to the center of
-//! the bounds.
+//!   the bounds.
 //! - Predicates of [`TriMesh::check`] and [`SelfIntersections`] are exact, not subject to a
-//! tolerance.
+//!   tolerance.
 //! - Attributes are interpolated once, in the original triangle. Unmoved values keep their bits.
 //! - Undo of an [`EditMesh`] or a [`Journaled`] array restores every bit.
 //!
 //! # Not guaranteed
 //!
 //! - A mesh that was read is valid, but it need not be closed, oriented or free of degenerate
-//! triangles.
+//!   triangles.
 //! - A [`ClosedMesh`] may intersect itself or be inside out.
-//! - Formats in single precision round positions; see
-//! `io::Format::stored`. Formats drop the attributes that they
-//! cannot store.
+//! - Formats in single precision round positions; see `io::Format::stored`. Formats drop the
+//!   attributes that they cannot store.
 //! - Tangents, morph targets, cameras and lights of glTF are not kept.
 //! - Indices are `u32`; larger meshes are refused or panic.
 //!
 //! # Features
 //!
-//! `io` (default) adds the module `io` and the libraries for its formats. An
-//! application that creates meshes itself can use `default-features = false`.
+//! `io` (default) adds the module `io` and the libraries for its formats. An application that
+//! creates meshes itself can use `default-features = false`.
 //!
 //! # Stages
 //!
