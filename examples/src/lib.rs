@@ -89,8 +89,8 @@ pub fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
     Ok(Scene::build(&recipe, &meshes, &NoProgress)?)
 }
 
-/// Sweeps a closed, counter-clockwise `outline` along `stations`. The ends are capped, or connected if `closes`; then the
-/// last station repeats the first.
+/// Sweeps a closed, counter-clockwise `outline` along `stations`. The ends are capped, or connected
+/// if `closes`; then the last station repeats the first.
 pub fn swept_body(stations: &[(DVec3, Frame)], outline: &[DVec2], closes: bool) -> TriMesh {
     let rows = if closes { &stations[..stations.len() - 1] } else { stations };
     let grid = sweep(rows, outline);
@@ -98,15 +98,16 @@ pub fn swept_body(stations: &[(DVec3, Frame)], outline: &[DVec2], closes: bool) 
     if closes { mesh.mesh() } else { mesh.capped_mesh(outline) }
 }
 
-/// Sweeps an outline of `columns` points that depends on the station and caps the ends. The callback receives the row and
-/// the column; both caps use the triangulation of the first row.
+/// Sweeps an outline of `columns` points that depends on the station and caps the ends. The
+/// callback receives the row and the column; both caps use the triangulation of the first row.
 pub fn varying_body(stations: &[(DVec3, Frame)], columns: usize, outline: impl Fn(usize, usize) -> DVec2) -> TriMesh {
     let grid = sweep_varying(stations, columns, &outline);
     let first: Vec<DVec2> = (0..columns).map(|column| outline(0, column)).collect();
     GridMesh { points: &grid.points, columns, rows_close: false, columns_close: true }.capped_mesh(&first)
 }
 
-/// A flat rectangular outline that makes the rotation of a frame visible: `width` along r, `height` along s.
+/// A flat rectangular outline that makes the rotation of a frame visible: `width` along r, `height`
+/// along s.
 pub fn strap(width: f64, height: f64) -> [DVec2; 4] {
     [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(x, y)| DVec2::new(0.5 * width * x, 0.5 * height * y))
 }
@@ -119,8 +120,8 @@ pub fn round(radius: f64, corners: usize) -> Vec<DVec2> {
         .collect()
 }
 
-/// Total absolute rotation of `frames` about their tangents, relative to the minimal rotation between neighboring
-/// stations, radians.
+/// Total absolute rotation of `frames` about their tangents, relative to the minimal rotation
+/// between neighboring stations, radians.
 pub fn total_turning(frames: &[Frame]) -> f64 {
     frames
         .windows(2)
@@ -131,8 +132,8 @@ pub fn total_turning(frames: &[Frame]) -> f64 {
         .sum()
 }
 
-/// Net flux of a field through a sphere as a fraction of the absolute flux, by the midpoint rule in height and longitude.
-/// Zero for a divergence-free field, except for the error of the rule.
+/// Net flux of a field through a sphere as a fraction of the absolute flux, by the midpoint rule in
+/// height and longitude. Zero for a divergence-free field, except for the error of the rule.
 pub fn relative_flux(velocity: impl Fn(DVec3) -> DVec3, center: DVec3, radius: f64) -> f64 {
     const CELLS: u32 = 256;
     let midpoint = |cell: u32| (f64::from(cell) + 0.5) / f64::from(CELLS);

@@ -2,7 +2,8 @@
 
 use std::{path::Path, process::Command};
 
-/// Runs a program in a temporary folder. Expects all of `parts` in its output and all of `files` in the folder.
+/// Runs a program in a temporary folder. Expects all of `parts` in its output and all of `files` in
+/// the folder.
 #[track_caller]
 fn run(program: &str, parts: &[&str], files: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();

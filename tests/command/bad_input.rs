@@ -4,7 +4,8 @@ use std::{fs, io::Write};
 
 use crate::folder::{Folder, PRESS, Run, TETRAHEDRON};
 
-/// Runs `PRESS` with `from` replaced by `to`, in a folder with `files` and an old output. Expects an error.
+/// Runs `PRESS` with `from` replaced by `to`, in a folder with `files` and an old output. Expects
+/// an error.
 #[track_caller]
 fn expect_rejected(from: &str, to: &str, files: &[(&str, &str)], parts: &[&str]) {
     assert!(PRESS.contains(from), "{from}");

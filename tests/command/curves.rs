@@ -162,7 +162,8 @@ fn writes_exact_surfaces_as_step() {
     folder.run(&arguments).expect(0);
     let text = String::from_utf8(folder.read("a.step")).unwrap();
     assert!(text.starts_with("ISO-10303-21;\n") && text.trim_end().ends_with("END-ISO-10303-21;"));
-    // Four segments with four sides: faces; edges across five joints and along four corners; vertices.
+    // Four segments with four sides: faces; edges across five joints and along four corners;
+    // vertices.
     for (entity, count) in [("RATIONAL_B_SPLINE_SURFACE", 16), ("EDGE_CURVE", 5 * 4 + 4 * 4), ("VERTEX_POINT", 5 * 4)] {
         assert_eq!(text.matches(&format!("{entity}(")).count(), count, "{entity}");
     }

@@ -65,7 +65,8 @@ impl Folder {
         serde_json::from_slice(&self.read(name)).unwrap()
     }
 
-    /// Contents of all files by name, including hidden and nested ones. Names of folders end in a slash.
+    /// Contents of all files by name, including hidden and nested ones. Names of folders end in a
+    /// slash.
     pub(crate) fn contents(&self) -> BTreeMap<String, Vec<u8>> {
         let mut contents = BTreeMap::new();
         collect(self.0.path(), "", &mut contents);

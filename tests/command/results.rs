@@ -273,7 +273,8 @@ fn distance_writes_an_array_and_its_metadata() {
         bytes[bytes.len() - 4 * 15 * 15 * 15..].chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
     let origin = number(&metadata["origin"][2]);
     let bound = number(&metadata["error_bound"]);
-    // Below the face z = 0 the distance is the height. The sample [z, y, x] = [0, 4, 4] is below the center of that face.
+    // Below the face z = 0 the distance is the height. The sample [z, y, x] = [0, 4, 4] is below
+    // the center of that face.
     let sample = f64::from(samples[4 * 15 + 4]);
     assert!((sample + origin).abs() <= bound, "{sample} at height {origin}, to {bound}");
     assert!(samples[(5 * 15 + 3) * 15 + 3] < 0.0, "inside");

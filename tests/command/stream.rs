@@ -1,4 +1,5 @@
-//! Tests of `run --stream`: the same bits as a replay in memory; all other contents of the file are copied.
+//! Tests of `run --stream`: the same bits as a replay in memory; all other contents of the file are
+//! copied.
 
 use std::fs;
 
@@ -8,8 +9,8 @@ use isochore_sculpt::{Meshes, Recipe, recipe::Format, replay_points};
 
 use crate::folder::{Folder, PRESS};
 
-/// `PRESS` with the target `name`, written to `out` with the same extension. A region stroke is added, because its
-/// number of steps depends on the bounds of the points.
+/// `PRESS` with the target `name`, written to `out` with the same extension. A region stroke is
+/// added, because its number of steps depends on the bounds of the points.
 fn recipe(name: &str) -> String {
     let extension = name.rsplit('.').next().unwrap();
     let region = "[[stroke]]\nkind = \"region\"\nmotion = { rotate = { origin = [0, 0, 0], axis = [1, 0, 0], degrees = 20.0 } }\n\
@@ -44,8 +45,8 @@ fn numpy_header(shape: &str, descr: &str) -> Vec<u8> {
     header
 }
 
-/// A binary PLY file. An element precedes the vertices, whose coordinates have properties before, between and after
-/// them; a face with an invalid index count follows.
+/// A binary PLY file. An element precedes the vertices, whose coordinates have properties before,
+/// between and after them; a face with an invalid index count follows.
 fn binary_ply(is_big: bool, points: &[DVec3]) -> Vec<u8> {
     let order = if is_big { "big" } else { "little" };
     let mut file = format!(
@@ -159,7 +160,8 @@ fn errors_name_the_position_in_invalid_files() {
     let message = format!("in.ply: the file is truncated: 2562 points announced, but it ends at byte {}", header + 200);
     expect_rejected("in.ply", &whole[..header + 200], &[], &[&message]);
     let mut infinite = whole.clone();
-    // The preceding element has four bytes, a vertex has 23 bytes, and x is at offset 1 of a vertex.
+    // The preceding element has four bytes, a vertex has 23 bytes, and x is at offset 1 of a
+    // vertex.
     infinite[header + 4 + 23 * 2 + 1..][..4].copy_from_slice(&f32::INFINITY.to_le_bytes());
     expect_rejected(
         "in.ply",
@@ -206,9 +208,9 @@ fn errors_name_keys_that_need_a_mesh() {
 
 /// Limit on data memory of a stream in bytes, as stated in the README. The system enforces it.
 ///
-/// A chunk of 65,536 points holds 24 bytes of the file and 24 bytes for each position before and after the strokes, per
-/// point: 5 MB. Buffers of 1 MiB for two files and three stacks of up to 2 MiB bring the total to 13 MB. The last third
-/// is for the allocator and the library.
+/// A chunk of 65,536 points holds 24 bytes of the file and 24 bytes for each position before and
+/// after the strokes, per point: 5 MB. Buffers of 1 MiB for two files and three stacks of up to 2
+/// MiB bring the total to 13 MB. The last third is for the allocator and the library.
 #[cfg(target_os = "linux")]
 const STREAM_MEMORY: usize = 20_000_000;
 

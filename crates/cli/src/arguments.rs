@@ -1,7 +1,7 @@
 //! The command line as plain data: the first of two stages.
 //!
-//! This module opens and computes nothing. The module of each subcommand turns its arguments into objects and
-//! rejects combinations that do not fit.
+//! This module opens and computes nothing. The module of each subcommand turns its arguments into
+//! objects and rejects combinations that do not fit.
 
 mod curves;
 
@@ -17,8 +17,8 @@ const GLOBAL: &str = "Global options";
 
 /// Deform triangle meshes and preserve their volume.
 ///
-/// Exit codes: 0 success; 1 a promise of the recipe was not kept, outputs are written; 2 invalid input or usage, nothing
-/// is written; 130 interrupted, nothing is written.
+/// Exit codes: 0 success; 1 a promise of the recipe was not kept, outputs are written; 2 invalid
+/// input or usage, nothing is written; 130 interrupted, nothing is written.
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(name = "isochore", version, max_term_width = 100)]
 pub struct Arguments {
@@ -69,8 +69,8 @@ pub struct RunArguments {
     #[arg(value_name = "RECIPE", value_hint = ValueHint::FilePath)]
     pub recipe: PathBuf,
 
-    /// Deformed mesh (.obj .gltf .glb .ply .stl .off; with --stream the format of the input) [default: output.mesh of
-    /// the recipe]
+    /// Deformed mesh (.obj .gltf .glb .ply .stl .off; with --stream the format of the input)
+    /// [default: output.mesh of the recipe]
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
 
@@ -78,9 +78,9 @@ pub struct RunArguments {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub report: Option<PathBuf>,
 
-    /// Deform the target as a point set, chunk by chunk, so that it need not fit into memory. The target is a .ply file,
-    /// whose faces and other properties are copied, or an N×3 array in a .npy file. Stamps, refinement and the volume
-    /// lock are not available
+    /// Deform the target as a point set, chunk by chunk, so that it need not fit into memory. The
+    /// target is a .ply file, whose faces and other properties are copied, or an N×3 array in a
+    /// .npy file. Stamps, refinement and the volume lock are not available
     #[arg(long)]
     pub stream: bool,
 
@@ -100,7 +100,8 @@ pub struct InspectArguments {
 /// Arguments of `isochore distance`.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct DistanceArguments {
-    /// Mesh file (.obj .gltf .glb .ply .stl .off); the winding number defines the inside of an open mesh
+    /// Mesh file (.obj .gltf .glb .ply .stl .off); the winding number defines the inside of an open
+    /// mesh
     #[arg(value_name = "MESH", value_hint = ValueHint::FilePath)]
     pub mesh: PathBuf,
 
@@ -112,8 +113,8 @@ pub struct DistanceArguments {
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pub padding: Option<f64>,
 
-    /// Samples as a NumPy array of f32 with index [z, y, x]; a .json file beside it holds origin, cell, dims and
-    /// error_bound
+    /// Samples as a NumPy array of f32 with index [z, y, x]; a .json file beside it holds origin,
+    /// cell, dims and error_bound
     #[arg(long, short, value_name = "GRID.npy", value_hint = ValueHint::FilePath)]
     pub output: PathBuf,
 }
@@ -156,7 +157,8 @@ pub struct CompletionsArguments {
 /// Arguments of `isochore man`.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct ManArguments {
-    /// Write one page per subcommand into this folder instead of printing the main page; created if missing
+    /// Write one page per subcommand into this folder instead of printing the main page; created if
+    /// missing
     #[arg(long, short, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub output: Option<PathBuf>,
 }

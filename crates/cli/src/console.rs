@@ -11,7 +11,8 @@ use serde::Serialize;
 
 use crate::{command_error::CommandError, interrupt::Interrupt};
 
-/// Prints progress and messages on stderr and results on stdout; the [`Monitor`] of every long operation.
+/// Prints progress and messages on stderr and results on stdout; the [`Monitor`] of every long
+/// operation.
 #[derive(Debug)]
 pub(crate) struct Console {
     bar: ProgressBar,

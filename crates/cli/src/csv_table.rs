@@ -13,12 +13,12 @@ pub(crate) struct CsvTable {
 }
 
 impl CsvTable {
-    /// Reads a table whose number of columns is one of `allowed_columns`. A first row without numbers is a header.
-    /// Empty lines and lines that start with # are skipped.
+    /// Reads a table whose number of columns is one of `allowed_columns`. A first row without
+    /// numbers is a header. Empty lines and lines that start with # are skipped.
     ///
     /// # Errors
-    /// The file cannot be read, has no rows, a cell is not a finite number, or a row has a different number of columns.
-    /// The error names the row and the column.
+    /// The file cannot be read, has no rows, a cell is not a finite number, or a row has a
+    /// different number of columns. The error names the row and the column.
     pub(crate) fn read(path: &Path, allowed_columns: &[usize]) -> Result<Self, CommandError> {
         let bytes = std::fs::read(path).map_err(|error| CommandError::cannot("read", path, &error))?;
         Self::parse(path, &bytes, allowed_columns)

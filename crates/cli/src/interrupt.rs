@@ -12,8 +12,9 @@ use std::{
 
 use crate::command_error::CommandError;
 
-/// Time that running work has to notice an interrupt before the process exits. Larger makes Ctrl-C seem dead during a
-/// stage that never checks; smaller exits before a stage that checks rarely can stop by itself.
+/// Time that running work has to notice an interrupt before the process exits. Larger makes Ctrl-C
+/// seem dead during a stage that never checks; smaller exits before a stage that checks rarely can
+/// stop by itself.
 const PATIENCE: Duration = Duration::from_millis(700);
 
 /// A flag that Ctrl-C raises, and the temporary folders to remove before an immediate exit.
@@ -81,7 +82,8 @@ impl Interrupt {
         self.unfinished().folders.push(folder.to_owned());
     }
 
-    /// Locks the list of temporary folders. The interrupt handler cannot end the process while the guard exists.
+    /// Locks the list of temporary folders. The interrupt handler cannot end the process while the
+    /// guard exists.
     pub(crate) fn unfinished(&self) -> MutexGuard<'_, Unfinished> {
         // A thread that panicked while holding the lock cannot have left the list inconsistent.
         self.shared.unfinished.lock().unwrap_or_else(PoisonError::into_inner)

@@ -62,7 +62,8 @@ impl Job {
         Ok(Self { path: path.to_owned(), text: bytes, settings: settings.to_vec(), recipe, outputs })
     }
 
-    /// Reads the meshes of the recipe. Replaces the file names of spines and of the mask by the contents of the files.
+    /// Reads the meshes of the recipe. Replaces the file names of spines and of the mask by the
+    /// contents of the files.
     pub(crate) fn read_meshes(&mut self) -> Result<Meshes, CommandError> {
         self.read_curves()?;
         let meshes = self.read_named_meshes()?;
@@ -96,7 +97,8 @@ impl Job {
         }
     }
 
-    /// Deforms the target and writes all outputs, together with the files that `staging` already holds.
+    /// Deforms the target and writes all outputs, together with the files that `staging` already
+    /// holds.
     pub(crate) fn execute(
         &self,
         meshes: Meshes,
@@ -107,7 +109,8 @@ impl Job {
         // Drafts come first, so that a missing folder is reported before the long computation.
         let drafts = Drafts::new(&self.outputs, &mut staging)?;
         let replay = replay(&self.recipe, &meshes, console).map_err(|error| self.replay_error(error))?;
-        // The scene owns a copy of the target. Dropping the input saves memory while the meshes are measured.
+        // The scene owns a copy of the target. Dropping the input saves memory while the meshes are
+        // measured.
         drop(meshes);
 
         let start = Instant::now();
@@ -142,7 +145,8 @@ impl Job {
     fn read_curves(&mut self) -> Result<(), CommandError> {
         let names: Vec<String> = self.recipe.curve_names().into_iter().map(str::to_owned).collect();
         for name in names {
-            // The tangents of a file with six columns are ignored: strokes fit a spline to the points.
+            // The tangents of a file with six columns are ignored: strokes fit a spline to the
+            // points.
             let table = CsvTable::read(&self.beside(&name), &[3, 6])?;
             let points: Vec<[f64; 3]> = table.rows.iter().map(|row| [row[0], row[1], row[2]]).collect();
             self.recipe.inline_curve(&name, &points);
@@ -182,7 +186,8 @@ fn invalid_recipe(path: &Path, source: RecipeError) -> CommandError {
     CommandError::Recipe { path: path.to_owned(), source }
 }
 
-/// Reads the weights of a mask, one per row. `vertices` is the number of vertices of the target if it is known.
+/// Reads the weights of a mask, one per row. `vertices` is the number of vertices of the target if
+/// it is known.
 fn read_weights(path: &Path, vertices: Option<usize>) -> Result<Vec<f64>, CommandError> {
     let table = CsvTable::read(path, &[1])?;
     let weights: Vec<f64> = table.rows.iter().map(|row| row[0]).collect();

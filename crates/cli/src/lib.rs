@@ -1,9 +1,9 @@
-//! The command `isochore`: deforms meshes by recipes, prints mesh statistics, samples signed distances, and computes
-//! frames and swept surfaces along curves.
+//! The command `isochore`: deforms meshes by recipes, prints mesh statistics, samples signed
+//! distances, and computes frames and swept surfaces along curves.
 //!
-//! The computations are in the libraries. This crate handles arguments, files, messages and exit codes. It parses a
-//! command line in two stages: [`arguments`] holds it as plain data, and the module of each subcommand turns that data
-//! into objects.
+//! The computations are in the libraries. This crate handles arguments, files, messages and exit
+//! codes. It parses a command line in two stages: [`arguments`] holds it as plain data, and the
+//! module of each subcommand turns that data into objects.
 //!
 //! | exit code | meaning |
 //! |---|---|
@@ -61,7 +61,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = match Arguments::try_parse_from(&arguments) {
         Ok(arguments) => execute(&arguments),
         Err(error) if !error.use_stderr() => {
-            // Printing help or the version fails only if stdout is closed, and then nobody reads it.
+            // Printing help or the version fails only if stdout is closed, and then nobody reads
+            // it.
             let _ = error.print();
             return ExitCode::SUCCESS;
         }

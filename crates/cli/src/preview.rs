@@ -4,10 +4,12 @@ use glam::DVec3;
 use isochore_mesh::TriMesh;
 use isochore_picture::{Body, Camera, Options, Paint, Panel, PictureError, render};
 
-/// Samples per pixel along each axis. Larger costs more time than most deformations; smaller leaves jagged outlines.
+/// Samples per pixel along each axis. Larger costs more time than most deformations; smaller leaves
+/// jagged outlines.
 const SAMPLES: usize = 2;
 
-/// Draws both meshes side by side with the same camera, with their vertex colors if they have any. Returns a PNG file.
+/// Draws both meshes side by side with the same camera, with their vertex colors if they have any.
+/// Returns a PNG file.
 pub(crate) fn before_and_after(before: &TriMesh, after: &TriMesh, camera: &Camera) -> Result<Vec<u8>, PictureError> {
     let [colors_before, colors_after] = [before, after].map(colors);
     let panels = [("before", before, &colors_before), ("after", after, &colors_after)].map(|(name, mesh, colors)| {

@@ -32,7 +32,8 @@ pub(crate) struct Stations {
 /// Measures of a spine.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct SpineFacts {
-    /// Angle about the tangent from the last to the first untwisted frame of a closed spine, radians.
+    /// Angle about the tangent from the last to the first untwisted frame of a closed spine,
+    /// radians.
     closing_angle: Option<f64>,
     /// Length of the polygon through the stations, model units.
     length: f64,
@@ -44,8 +45,8 @@ impl SpineFile {
     /// Reads the curve and determines its tangents.
     ///
     /// # Errors
-    /// The file is not a table of three or six columns, it lacks the requested tangents, or its rows do not form a
-    /// spine. The error names the rows.
+    /// The file is not a table of three or six columns, it lacks the requested tangents, or its
+    /// rows do not form a spine. The error names the rows.
     pub(crate) fn read(options: &SpineOptions) -> Result<Self, CommandError> {
         let table = CsvTable::read(&options.curve, &[3, 6])?;
         let has_tangents = table.columns() == 6;
@@ -80,8 +81,8 @@ impl SpineFile {
     /// Computes frames along the spine and twists them.
     ///
     /// # Errors
-    /// The reference vector is parallel to the first tangent, or a segment has no frames or no curve of the chosen
-    /// method. The error names the rows of the segment.
+    /// The reference vector is parallel to the first tangent, or a segment has no frames or no
+    /// curve of the chosen method. The error names the rows of the segment.
     pub(crate) fn stations(&self, options: &SpineOptions) -> Result<Stations, CommandError> {
         let reference = self.reference(options);
         let failed = |error| self.frame_error(error);
@@ -108,7 +109,8 @@ impl SpineFile {
     fn twist(&self, untwisted: Vec<(DVec3, Frame)>, options: &SpineOptions) -> Result<Stations, CommandError> {
         let is_closed = self.spine.is_closed();
         let (points, mut frames): (Vec<DVec3>, Vec<Frame>) = untwisted.into_iter().unzip();
-        // An open spine through all stations, because the stations of a closed one repeat the first point.
+        // An open spine through all stations, because the stations of a closed one repeat the first
+        // point.
         let tangents = frames.iter().map(|frame| frame.t).collect();
         let spine = Spine::new(points.clone(), tangents, false).map_err(|error| spine_error(&self.table, error))?;
         let facts = SpineFacts {

@@ -36,7 +36,8 @@ pub(crate) enum TangentSource {
     Automatic,
 }
 
-/// Method that computes frames, with the number of samples between two rows if it defines a curve there.
+/// Method that computes frames, with the number of samples between two rows if it defines a curve
+/// there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum FrameOptions {
     Sampled(FrameMethod),
@@ -62,7 +63,8 @@ impl SpineOptions {
     /// Checks `arguments`. `default_twist` applies if the command line has no `--twist`.
     ///
     /// # Errors
-    /// `--samples-per-segment` with a method that defines no curve between rows, or `--twist minimal` for an open curve.
+    /// `--samples-per-segment` with a method that defines no curve between rows, or `--twist
+    /// minimal` for an open curve.
     pub(crate) fn new(arguments: &SpineArguments, default_twist: Twist) -> Result<Self, CommandError> {
         Ok(Self {
             curve: arguments.curve.clone(),

@@ -15,7 +15,8 @@ use tempfile::TempDir;
 
 use crate::{command_error::CommandError, interrupt::Interrupt};
 
-/// Files that are written to temporary folders, the drafts, and moved to their targets by [`commit`](Self::commit).
+/// Files that are written to temporary folders, the drafts, and moved to their targets by
+/// [`commit`](Self::commit).
 ///
 /// Dropping it without a commit removes the drafts and leaves all targets unchanged.
 #[derive(Debug)]
@@ -57,8 +58,8 @@ impl Staging {
     /// Adds the file `target`. Returns the path of its draft.
     ///
     /// # Errors
-    /// The folder of `target` is missing or cannot be written, `target` exists and is not a regular file, or it was
-    /// added before.
+    /// The folder of `target` is missing or cannot be written, `target` exists and is not a regular
+    /// file, or it was added before.
     pub(crate) fn add_file(&mut self, target: &Path) -> Result<PathBuf, CommandError> {
         if self.files.iter().any(|staged| staged.target == target) {
             return Err(CommandError::file(target, "two outputs have this path; rename one"));
@@ -81,7 +82,8 @@ impl Staging {
     /// Writes the bytes of a draft.
     ///
     /// # Errors
-    /// The system cannot write the file, for example because the disk is full. The error names the target.
+    /// The system cannot write the file, for example because the disk is full. The error names the
+    /// target.
     pub(crate) fn write(&self, draft: &Path, bytes: &[u8]) -> Result<(), CommandError> {
         let write = || {
             let mut file = fs::File::create(draft)?;
@@ -94,7 +96,8 @@ impl Staging {
     /// Writes a mesh to a draft. The extension selects the format.
     ///
     /// # Errors
-    /// The mesh does not fit the format, or the system cannot write the file. The error names the target.
+    /// The mesh does not fit the format, or the system cannot write the file. The error names the
+    /// target.
     pub(crate) fn write_mesh(&self, draft: &Path, mesh: &TriMesh) -> Result<(), CommandError> {
         mesh_io::write(draft, mesh).map_err(|error| {
             let path = self.target_of(draft).to_owned();
@@ -131,9 +134,11 @@ impl Staging {
             let cannot = |error: io::Error| CommandError::cannot("write", target, &error);
             let mut step = Step::RemoveFile(target.clone());
             if let Ok(metadata) = fs::metadata(target) {
-                // Beside the slot of the draft, not in it: there the name could collide with that of the output.
+                // Beside the slot of the draft, not in it: there the name could collide with that
+                // of the output.
                 let kept = parent(draft).with_extension("previous");
-                // A link keeps the target in place until it is replaced. Some file systems have no links and need a copy.
+                // A link keeps the target in place until it is replaced. Some file systems have no
+                // links and need a copy.
                 fs::hard_link(target, &kept).or_else(|_| fs::copy(target, &kept).map(drop)).map_err(cannot)?;
                 fs::set_permissions(draft, metadata.permissions()).map_err(cannot)?;
                 step = Step::Restore { kept, target: target.clone() };

@@ -21,7 +21,8 @@ use crate::{
     staging::Staging,
 };
 
-/// Number of points in memory. Larger needs more memory; smaller leaves each thread too little work.
+/// Number of points in memory. Larger needs more memory; smaller leaves each thread too little
+/// work.
 const CHUNK: usize = 1 << 16;
 
 pub(crate) fn stream(mut job: Job, console: &Console) -> Result<Outcome, CommandError> {
@@ -135,7 +136,8 @@ impl Pass<'_> {
     }
 }
 
-/// Forwards interrupts during a chunk. Ignores its progress, which would restart at zero with every chunk.
+/// Forwards interrupts during a chunk. Ignores its progress, which would restart at zero with every
+/// chunk.
 struct ChunkMonitor<'a>(&'a Console);
 
 impl Monitor for ChunkMonitor<'_> {

@@ -1,4 +1,5 @@
-//! `isochore sweep`: the surface that a cross-section sweeps along a curve, as a mesh or as exact rational patches.
+//! `isochore sweep`: the surface that a cross-section sweeps along a curve, as a mesh or as exact
+//! rational patches.
 
 use std::path::Path;
 

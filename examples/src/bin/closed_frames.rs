@@ -1,5 +1,6 @@
-//! A closed spine whose rotation-minimizing frame does not close, and frames that do: with the minimal twist and with one
-//! and two additional turns, proportional to the turning angle and to arc length (figure 13 of Wang et al. 2008).
+//! A closed spine whose rotation-minimizing frame does not close, and frames that do: with the
+//! minimal twist and with one and two additional turns, proportional to the turning angle and to
+//! arc length (figure 13 of Wang et al. 2008).
 
 use std::error::Error;
 

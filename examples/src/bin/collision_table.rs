@@ -1,8 +1,8 @@
 #![expect(clippy::print_stdout, reason = "examples print the paths of their files")]
 
-//! Six cases similar to table 13.1 of Zheng's thesis, whose models and paths are not published. Measures the change of
-//! volume without the volume lock, unrefined and refined, and frames per second on one core, and lists them beside the
-//! published values. Writes `collision_table.md`.
+//! Six cases similar to table 13.1 of Zheng's thesis, whose models and paths are not published.
+//! Measures the change of volume without the volume lock, unrefined and refined, and frames per
+//! second on one core, and lists them beside the published values. Writes `collision_table.md`.
 
 use std::{error::Error, fmt::Write, fs};
 

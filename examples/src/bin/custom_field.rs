@@ -1,5 +1,5 @@
-//! A user-defined field that swirls a ball of space about its center. Measures its flux, the Jacobian of its flow map
-//! and the change of volume of a mesh.
+//! A user-defined field that swirls a ball of space about its center. Measures its flux, the
+//! Jacobian of its flow map and the change of volume of a mesh.
 
 #![expect(clippy::print_stdout, reason = "the measurements are the result")]
 
@@ -14,7 +14,8 @@ const CENTER: DVec3 = DVec3::Z;
 const RADIUS: f64 = 0.8;
 const ANGULAR: DVec3 = DVec3::new(2.0, 0.0, 0.0);
 
-/// V = curl(s P) with the potential P = −½|x|² ω of a rigid rotation and the falloff s = (1 − |x|²/R²)³.
+/// V = curl(s P) with the potential P = −½|x|² ω of a rigid rotation and the falloff s = (1 −
+/// |x|²/R²)³.
 #[derive(Debug)]
 struct Swirl;
 

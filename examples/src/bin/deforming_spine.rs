@@ -1,5 +1,6 @@
-//! Frames of a spine that deforms through a planar curve with an inflection. The Frenet frame flips abruptly; the
-//! rotation-minimizing frame hardly changes (figure 1.2 of Zheng's thesis, on the curve of its section 3.4).
+//! Frames of a spine that deforms through a planar curve with an inflection. The Frenet frame flips
+//! abruptly; the rotation-minimizing frame hardly changes (figure 1.2 of Zheng's thesis, on the
+//! curve of its section 3.4).
 
 use std::error::Error;
 

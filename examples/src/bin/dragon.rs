@@ -1,5 +1,5 @@
-//! The body of a dragon along a spine. A twisted frame keeps the crest upright at the tail and at the head (figure 7.4 of
-//! Zheng's thesis).
+//! The body of a dragon along a spine. A twisted frame keeps the crest upright at the tail and at
+//! the head (figure 7.4 of Zheng's thesis).
 
 use std::error::Error;
 

@@ -1,6 +1,6 @@
-//! Velocity arrows on a section through a field: red inside the tool, blue outside, green for the motion of the tool
-//! (figures 11.2 to 11.5 and the upper half of 12.6 of Zheng's thesis). Arrows of a free-form tool are colored by speed
-//! (figure 12.1).
+//! Velocity arrows on a section through a field: red inside the tool, blue outside, green for the
+//! motion of the tool (figures 11.2 to 11.5 and the upper half of 12.6 of Zheng's thesis). Arrows
+//! of a free-form tool are colored by speed (figure 12.1).
 
 use std::error::Error;
 
@@ -17,7 +17,8 @@ const GREEN: DVec3 = DVec3::new(0.02, 0.45, 0.04);
 /// Number of arrows along the longer side of a section.
 const ARROWS: f64 = 42.0;
 
-/// Speed, as a fraction of the largest, below which no arrow is drawn. Larger hides the outer field; smaller draws dots.
+/// Speed, as a fraction of the largest, below which no arrow is drawn. Larger hides the outer
+/// field; smaller draws dots.
 const SLOWEST: f64 = 0.02;
 
 /// Number of colors for speeds.
@@ -135,7 +136,8 @@ fn spacing(bounds: Aabb, normal: DVec3) -> f64 {
     [across, up].map(|axis| axis.abs().dot(bounds.size())).into_iter().fold(0.0, f64::max) / ARROWS
 }
 
-/// Samples of the field, where it is nonzero, on a grid in the plane through the center of its support.
+/// Samples of the field, where it is nonzero, on a grid in the plane through the center of its
+/// support.
 fn section(field: &dyn Field, normal: DVec3, spacing: f64) -> Vec<Sample> {
     let bounds = field.bounds();
     let reach = (0.5 * bounds.size().length() / spacing).ceil() as i32;
@@ -163,8 +165,8 @@ fn core_speed(samples: &[Sample]) -> f64 {
     samples.iter().filter(|sample| sample.is_inside).map(|sample| sample.velocity.length()).fold(0.0, f64::max)
 }
 
-/// Center of the tool in the section and its mean direction of motion. `None` if the tool only rotates or moves along the
-/// normal.
+/// Center of the tool in the section and its mean direction of motion. `None` if the tool only
+/// rotates or moves along the normal.
 fn motion(samples: &[Sample], normal: DVec3) -> Option<(DVec3, DVec3)> {
     let (mut center, mut velocity, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for sample in samples.iter().filter(|sample| sample.is_inside) {

@@ -1,6 +1,6 @@
-//! Supports of fields, cut open: the tool, the boundary of its support and an inner offset surface (figure 11.7 of Zheng's
-//! thesis), and the support of a field defined by a radius beside that of a field defined by the distance to the shape
-//! (figure 12.2).
+//! Supports of fields, cut open: the tool, the boundary of its support and an inner offset surface
+//! (figure 11.7 of Zheng's thesis), and the support of a field defined by a radius beside that of a
+//! field defined by the distance to the shape (figure 12.2).
 
 use std::error::Error;
 
@@ -43,7 +43,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         .with(Body::new(&core).with_paint(Paint::Uniform(BLUE)));
     save_picture("shells_knight", &[panel], &camera, &options)?;
 
-    // The inner sphere of a field defined by a radius must contain the whole shape; the support extends beyond it.
+    // The inner sphere of a field defined by a radius must contain the whole shape; the support
+    // extends beyond it.
     let bounds = tool.distance().bounds();
     let whole = offset_surface(tool, 0.0);
     let radius = whole.positions.iter().map(|&point| point.distance(tool.center())).fold(0.0, f64::max);

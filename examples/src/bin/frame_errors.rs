@@ -1,4 +1,5 @@
-//! The torus knot, swept with frames of four methods and colored by their error (figures 6.5 to 6.8 of Zheng's thesis).
+//! The torus knot, swept with frames of four methods and colored by their error (figures 6.5 to 6.8
+//! of Zheng's thesis).
 
 use std::error::Error;
 

@@ -1,5 +1,6 @@
-//! Reproduces tables III and IV of Wang et al. 2008 (6.2 and 6.3 of Zheng's thesis) and prints the published values
-//! beside the measured ones. Table V (6.4) cannot be reproduced, because no curve exists for its printed data.
+//! Reproduces tables III and IV of Wang et al. 2008 (6.2 and 6.3 of Zheng's thesis) and prints the
+//! published values beside the measured ones. Table V (6.4) cannot be reproduced, because no curve
+//! exists for its printed data.
 
 #![expect(clippy::print_stdout, reason = "the tables are the result")]
 
@@ -11,7 +12,8 @@ use isochore_curve::{
     runge_kutta_frames, uniform_parameters,
 };
 
-/// Number of segments and published errors of double reflection, Runge-Kutta, projection and rotation.
+/// Number of segments and published errors of double reflection, Runge-Kutta, projection and
+/// rotation.
 const PUBLISHED: [(usize, [f64; 4]); 6] = [
     (64, [5.10e-3, 3.58e-2, 1.56e-1, 2.60e-1]),
     (128, [3.24e-4, 2.32e-3, 9.03e-2, 1.91e-1]),
@@ -54,8 +56,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     table_five()
 }
 
-/// A star if a measured error does not round to the three published digits. The tolerance of half a unit in the last
-/// digit also accepts truncated values.
+/// A star if a measured error does not round to the three published digits. The tolerance of half a
+/// unit in the last digit also accepts truncated values.
 fn mark(published: f64, measured: f64) -> char {
     let exponent = libm::floor(libm::log10(published));
     let unit = libm::pow(10.0, exponent - 2.0);

@@ -1,4 +1,5 @@
-//! Computes rotation-minimizing frames along a torus knot, measures their error and order, closes them, and sweeps a strap.
+//! Computes rotation-minimizing frames along a torus knot, measures their error and order, closes
+//! them, and sweeps a strap.
 
 #![expect(clippy::print_stdout, reason = "the measurements are the result")]
 

@@ -1,5 +1,5 @@
-//! The frame of a glass table: a closed rod with three contact lines at the glass and three at the ground (figure 7.5 of
-//! Zheng's thesis).
+//! The frame of a glass table: a closed rod with three contact lines at the glass and three at the
+//! ground (figure 7.5 of Zheng's thesis).
 
 use std::{error::Error, f64::consts::TAU};
 
@@ -22,7 +22,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let spine = Spine::sample(&ring(), SEGMENTS)?;
     let frames =
         rotation_minimizing_frames(&spine, DVec3::Z, FrameMethod::DoubleReflection, Default::default())?.stations;
-    // At the alternating highest and lowest points, the flat side of the rod touches the glass and the ground.
+    // At the alternating highest and lowest points, the flat side of the rod touches the glass and
+    // the ground.
     let constraints: Vec<TwistConstraint> =
         (0..6).map(|i| TwistConstraint { station: i * SEGMENTS / 6, direction: DVec3::Z, turns: 0 }).collect();
     let twisted = meet_constraints(&spine, &frames, &constraints, TwistLaw::ArcLength)?;

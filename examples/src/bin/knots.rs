@@ -1,5 +1,5 @@
-//! The cinquefoil and the trefoil knot, swept with closed rotation-minimizing frames and with Frenet frames (figures 7.2
-//! and 7.3 of Zheng's thesis).
+//! The cinquefoil and the trefoil knot, swept with closed rotation-minimizing frames and with
+//! Frenet frames (figures 7.2 and 7.3 of Zheng's thesis).
 
 use std::error::Error;
 

@@ -1,4 +1,5 @@
-//! Presses a ball into a sphere with a pin that keeps a spot in place and a mirror plane that repeats the dent.
+//! Presses a ball into a sphere with a pin that keeps a spot in place and a mirror plane that
+//! repeats the dent.
 
 #![expect(clippy::print_stdout, reason = "the measurements are the result")]
 

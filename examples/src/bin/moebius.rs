@@ -1,5 +1,5 @@
-//! Rational curves of degree six with rational rotation-minimizing frames, fitted to example 1 of Bartoň et al. 2009, and
-//! the strips that the frames sweep (figure 3 of the paper).
+//! Rational curves of degree six with rational rotation-minimizing frames, fitted to example 1 of
+//! Bartoň et al. 2009, and the strips that the frames sweep (figure 3 of the paper).
 
 use std::error::Error;
 

@@ -1,5 +1,5 @@
-//! Exact rational sweeps along a Pythagorean-hodograph cubic: a moulding and a developable surface, beside the same
-//! sweeps with Frenet frames (figures 1 and 7 of Mäurer and Jüttler 1999).
+//! Exact rational sweeps along a Pythagorean-hodograph cubic: a moulding and a developable surface,
+//! beside the same sweeps with Frenet frames (figures 1 and 7 of Mäurer and Jüttler 1999).
 
 use std::error::Error;
 

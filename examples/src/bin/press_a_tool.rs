@@ -1,4 +1,5 @@
-//! Presses a chess pawn into the planet of the folder `data` and measures how well the volume is preserved.
+//! Presses a chess pawn into the planet of the folder `data` and measures how well the volume is
+//! preserved.
 
 #![expect(clippy::print_stdout, reason = "the measurements are the result")]
 

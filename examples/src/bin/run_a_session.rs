@@ -1,4 +1,5 @@
-//! Sculpts interactively, without a window: strokes, changed ranges of the render buffers, undo, redo and the log.
+//! Sculpts interactively, without a window: strokes, changed ranges of the render buffers, undo,
+//! redo and the log.
 
 #![expect(clippy::print_stdout, reason = "the measurements are the result")]
 
@@ -22,7 +23,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         free_form: 0.0,
     };
     let tool = Arc::new(SessionTool::new("ball", ball, &Meshes::new(), &NoProgress)?);
-    // The first call reports the whole buffers. Later calls report what a renderer must upload again.
+    // The first call reports the whole buffers. Later calls report what a renderer must upload
+    // again.
     session.take_changes();
 
     for (stroke, direction) in [DVec3::Z, DVec3::X].into_iter().enumerate() {

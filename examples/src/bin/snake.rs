@@ -1,5 +1,5 @@
-//! A snake that is modeled along a straight axis and bent along a spine, with rotation-minimizing and with Frenet frames
-//! (figure 1.1 of Zheng's thesis).
+//! A snake that is modeled along a straight axis and bent along a spine, with rotation-minimizing
+//! and with Frenet frames (figure 1.1 of Zheng's thesis).
 
 use std::error::Error;
 
@@ -38,7 +38,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let spine = Spine::from_jets(parameters.iter().map(|&u| curve.jet(u)), false)?;
     let minimizing =
         rotation_minimizing_frames(&spine, DVec3::Z, FrameMethod::DoubleReflection, Default::default())?.stations;
-    // A natural spline has zero curvature and no Frenet frame at its ends; the neighbors' frames are used.
+    // A natural spline has zero curvature and no Frenet frame at its ends; the neighbors' frames
+    // are used.
     let mut inner = parameters.clone();
     inner[0] = parameters[1];
     inner[SEGMENTS] = parameters[SEGMENTS - 1];

@@ -23,13 +23,13 @@ pub struct SweepArguments {
     #[command(flatten)]
     pub spine: SpineArguments,
 
-    /// Cross-section, one point per row, with coordinates along r and s; with --bezier an optional third column holds
-    /// weights
+    /// Cross-section, one point per row, with coordinates along r and s; with --bezier an optional
+    /// third column holds weights
     #[arg(long, value_name = "PROFILE.csv", value_hint = ValueHint::FilePath)]
     pub profile: PathBuf,
 
-    /// Surface: a mesh (.obj .gltf .glb .ply .stl .off), or exact rational patches of degree 9 along the curve (.json
-    /// .step .stp)
+    /// Surface: a mesh (.obj .gltf .glb .ply .stl .off), or exact rational patches of degree 9
+    /// along the curve (.json .step .stp)
     #[arg(long, short, value_name = "SURFACE", value_hint = ValueHint::FilePath)]
     pub output: PathBuf,
 
@@ -65,12 +65,13 @@ pub struct SpineArguments {
     #[arg(long)]
     pub closed: bool,
 
-    /// Initial reference vector, projected onto the plane normal to the curve [default: the Frenet normal if it exists]
+    /// Initial reference vector, projected onto the plane normal to the curve [default: the Frenet
+    /// normal if it exists]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     pub r0: Option<[f64; 3]>,
 
-    /// Rotation about the curve: none, minimal (closes the frames of a closed curve), or a number of additional full
-    /// turns [default: none; minimal when sweeping along a closed curve]
+    /// Rotation about the curve: none, minimal (closes the frames of a closed curve), or a number
+    /// of additional full turns [default: none; minimal when sweeping along a closed curve]
     #[arg(long, value_name = "none|minimal|TURNS", value_parser = parse_twist, allow_hyphen_values = true)]
     pub twist: Option<Twist>,
 

@@ -21,8 +21,8 @@ impl CrossSection {
     /// Reads the file of `--profile`.
     ///
     /// # Errors
-    /// The file is not a table of two columns (or three with `--bezier`), has too few rows, a weight is not positive, or
-    /// a closed outline repeats its first point.
+    /// The file is not a table of two columns (or three with `--bezier`), has too few rows, a
+    /// weight is not positive, or a closed outline repeats its first point.
     pub(super) fn read(arguments: &SweepArguments) -> Result<Self, CommandError> {
         let columns: &[usize] = if arguments.bezier { &[2, 3] } else { &[2] };
         let table = CsvTable::read(&arguments.profile, columns)?;

@@ -17,8 +17,8 @@ type Shell = CompressedShell<Point3, NurbsCurve<Vector4>, NurbsSurface<Vector4>>
 
 /// Encodes the surface as one open shell whose neighboring faces share edges.
 ///
-/// STEP requires a unit of length, so model units become millimeters. Numbers below 0.01 are written with eleven digits,
-/// larger ones exactly.
+/// STEP requires a unit of length, so model units become millimeters. Numbers below 0.01 are
+/// written with eleven digits, larger ones exactly.
 pub(super) fn to_step(net: &Net, path: &Path) -> String {
     let shell = shell(net);
     let header = StepHeaderDescriptor {
