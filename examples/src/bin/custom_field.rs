@@ -7,7 +7,9 @@ use std::{error::Error, sync::Arc};
 
 use glam::DVec3;
 use isochore_examples::{relative_flux, save_mesh};
-use isochore_field::{DeformOptions, Field, FieldBlock, FieldStroke, MovingField, Stroke, deform};
+use isochore_field::{
+    DeformOptions, Field, FieldBlock, FieldStroke, MovingField, NO_CORE, Stroke, WeightedPotential, deform,
+};
 use isochore_mesh::{Aabb, LANES, NoProgress, PointBlock, primitives};
 
 const CENTER: DVec3 = DVec3::Z;
@@ -21,14 +23,17 @@ struct Swirl;
 
 impl Field for Swirl {
     fn evaluate_into(&self, points: &PointBlock, out: &mut FieldBlock) {
-        *out = FieldBlock::ZERO;
         for lane in 0..LANES {
             let x = points.get(lane) - CENTER;
             let base = (1.0 - x.length_squared() / RADIUS.powi(2)).max(0.0);
-            let gradient = -6.0 * base.powi(2) / RADIUS.powi(2) * x;
-            let potential = -0.5 * x.length_squared() * ANGULAR;
             // V = s curl P + ∇s × P, and curl P = ω × x.
-            out.set_product(lane, base.powi(3), gradient, potential, ANGULAR.cross(x));
+            let product = WeightedPotential {
+                weight: base.powi(3),
+                gradient: -6.0 * base.powi(2) / RADIUS.powi(2) * x,
+                potential: -0.5 * x.length_squared() * ANGULAR,
+                curl: ANGULAR.cross(x),
+            };
+            out.set_inside(lane, product, NO_CORE);
         }
     }
     fn bounds(&self) -> Aabb {
