@@ -16,8 +16,8 @@ const CENTER: DVec3 = DVec3::Z;
 const RADIUS: f64 = 0.8;
 const ANGULAR: DVec3 = DVec3::new(2.0, 0.0, 0.0);
 
-/// V = curl(s P) with the potential P = −½|x|² ω of a rigid rotation and the falloff s = (1 −
-/// |x|²/R²)³.
+/// V = curl(s P) with P = −½|x|² ω, the potential of a rigid rotation, and the falloff
+/// s = (1 − |x|²/R²)³.
 #[derive(Debug)]
 struct Swirl;
 
