@@ -1,6 +1,7 @@
-"""Advection through a velocity that is sampled on a grid, trilinear, by one library, named on the command line: `advect.py LIBRARY`.
+"""Advection in a sampled velocity with trilinear interpolation, by one library: `advect.py LIBRARY`.
 
-All is single precision, compiled, and one call carries all points through all steps. Numbers come and go through files.
+The code is compiled and uses single precision. One call advects all points through all steps.
+Arrays are passed through files.
 """
 
 import importlib
@@ -21,10 +22,10 @@ class Warp:
         wp.set_module_options({"enable_backward": False, "fast_math": True})
 
         @wp.func
-        def velocity(grid: wp.array(dtype=wp.vec3), nodes: int, place: wp.vec3):
-            # Every place is inside, so that nothing is clamped.
-            i, j, k = int(place[0]), int(place[1]), int(place[2])
-            u, v, w = place[0] - float(i), place[1] - float(j), place[2] - float(k)
+        def velocity(grid: wp.array(dtype=wp.vec3), nodes: int, point: wp.vec3):
+            # All points are inside the grid, so no clamping is needed.
+            i, j, k = int(point[0]), int(point[1]), int(point[2])
+            u, v, w = point[0] - float(i), point[1] - float(j), point[2] - float(k)
             first = (k * nodes + j) * nodes + i
             layer = first + nodes * nodes
             low_front = wp.lerp(grid[first], grid[first + 1], u)
@@ -42,14 +43,14 @@ class Warp:
             ends: wp.array(dtype=wp.vec3),
         ):
             index = wp.tid()
-            place = points[index]
+            point = points[index]
             for _ in range(steps):
-                k1 = velocity(grid, nodes, place)
-                k2 = velocity(grid, nodes, place + 0.5 * k1)
-                k3 = velocity(grid, nodes, place + 0.5 * k2)
-                k4 = velocity(grid, nodes, place + k3)
-                place += (k1 + 2.0 * (k2 + k3) + k4) / 6.0
-            ends[index] = place
+                k1 = velocity(grid, nodes, point)
+                k2 = velocity(grid, nodes, point + 0.5 * k1)
+                k3 = velocity(grid, nodes, point + 0.5 * k2)
+                k4 = velocity(grid, nodes, point + k3)
+                point += (k1 + 2.0 * (k2 + k3) + k4) / 6.0
+            ends[index] = point
 
         self.kernel = advect
 
@@ -74,7 +75,8 @@ class Numba:
 
         @compiled
         def velocity(grid, nodes, x, y, z):
-            # Every place is inside, so that nothing is clamped. Indices without a sign need no wrapping around.
+            # All points are inside the grid, so no clamping is needed. Unsigned indices avoid the check
+            # for negative ones.
             i, j, k = numba.uint32(x), numba.uint32(y), numba.uint32(z)
             u, v, w = x - SINGLE(i), y - SINGLE(j), z - SINGLE(k)
             first = numba.uintp((k * nodes + j) * nodes + i)
@@ -130,7 +132,10 @@ def start():
 
 
 def prepare(grid, nodes, points, steps):
-    """`grid`: displacements in a step, in cells, [z, y, x, 3]; `points`: in cells from the first node. Also compiles."""
+    """Receives the input and compiles the code.
+
+    `grid`: displacement per step in cells, [z, y, x, 3]. `points`: in cells from the first node.
+    """
 
     def read(path):
         return numpy.fromfile(path, numpy.float64).reshape(-1, 3).astype(SINGLE)
@@ -141,9 +146,9 @@ def prepare(grid, nodes, points, steps):
 
 
 def advect(ends):
-    """Writes where the points end, in cells."""
-    arrived, seconds = timed(peer.advect)
-    arrived.astype(numpy.float64).tofile(ends)
+    """Advects the points and writes their end positions, in cells."""
+    positions, seconds = timed(peer.advect)
+    positions.astype(numpy.float64).tofile(ends)
     return {"seconds": seconds}
 
 

@@ -1,7 +1,7 @@
-"""Signed distances by one library, named on the command line: `distance.py LIBRARY`.
+"""Signed distances by one library: `distance.py LIBRARY`.
 
-Numbers come and go through files: vertices and points in double precision, triangles as 32-bit indices. Points are layers of
-a grid, x fastest.
+Arrays are passed through files: vertices and points in double precision, triangles as 32-bit indices.
+The points are layers of a grid; x varies fastest.
 """
 
 import importlib
@@ -26,7 +26,7 @@ class Open3d:
     def build(self):
         self.scene = self.library.t.geometry.RaycastingScene(nthreads=1)
         self.scene.add_triangles(self.vertices, self.triangles)
-        # The hierarchy is made for the first query.
+        # The first query builds the hierarchy.
         self.scene.compute_distance(self.vertices[:1])
 
     def prepare_points(self, points, grid):
@@ -43,19 +43,19 @@ class Libigl:
     def prepare(self, vertices, triangles):
         self.vertices, self.triangles = vertices, triangles.astype(numpy.int64)
 
-    # One function does all. What it takes for a single point is the time of its preparation.
+    # The library has one function for all steps. Its time for a single point is that of the preparation.
     builds_in_query = True
 
     def build(self):
-        self.ask(self.vertices[:1])
+        self.signed_distance(self.vertices[:1])
 
     def prepare_points(self, points, grid):
         self.points = points
 
     def query(self):
-        return self.ask(self.points)
+        return self.signed_distance(self.points)
 
-    def ask(self, points):
+    def signed_distance(self, points):
         kind = self.library.SignedDistanceType.SIGNED_DISTANCE_TYPE_PSEUDONORMAL
         return self.library.signed_distance(points, self.vertices, self.triangles, kind)[0]
 
@@ -76,7 +76,7 @@ class Meshlib:
         vector = self.library.Vector3f
         self.parameters = self.library.MeshToDistanceVolumeParams()
         volume = self.parameters.vol
-        # It fills the middles of its cells.
+        # The samples are at the centers of the cells.
         volume.origin = vector(*(grid["first"][axis] - 0.5 * grid["step"][axis] for axis in range(3)))
         volume.voxelSize = vector(*grid["step"])
         volume.dimensions = self.library.Vector3i(*grid["dims"])
@@ -84,7 +84,7 @@ class Meshlib:
 
     def query(self):
         volume = self.library.meshToDistanceVolume(self.library.MeshPart(self.mesh), self.parameters)
-        # From [x, y, z] order.
+        # Reorder from [x, y, z].
         return self.numpy.getNumpy3Darray(volume).transpose(2, 1, 0).ravel()
 
 
@@ -95,13 +95,13 @@ class Warp:
         wp.init()
 
         @wp.kernel
-        def ask(mesh: wp.uint64, points: wp.array(dtype=wp.vec3), distances: wp.array(dtype=wp.float32)):
+        def signed_distance(mesh: wp.uint64, points: wp.array(dtype=wp.vec3), distances: wp.array(dtype=wp.float32)):
             i = wp.tid()
-            answer = wp.mesh_query_point_sign_normal(mesh, points[i], 1.0e6)
-            nearest = wp.mesh_eval_position(mesh, answer.face, answer.u, answer.v)
-            distances[i] = answer.sign * wp.length(points[i] - nearest)
+            result = wp.mesh_query_point_sign_normal(mesh, points[i], 1.0e6)
+            nearest = wp.mesh_eval_position(mesh, result.face, result.u, result.v)
+            distances[i] = result.sign * wp.length(points[i] - nearest)
 
-        self.kernel = ask
+        self.kernel = signed_distance
 
     def array(self, numbers, kind):
         return self.library.array(numbers, dtype=kind, device="cpu")
@@ -116,7 +116,7 @@ class Warp:
     def prepare_points(self, points, grid):
         self.points = self.array(points.astype(numpy.float32), self.library.vec3)
         self.distances = self.library.zeros(len(points), dtype=self.library.float32, device="cpu")
-        # Compiles.
+        # Compile the kernel.
         self.library.launch(self.kernel, 1, inputs=[self.mesh.id, self.points, self.distances], device="cpu")
 
     def query(self):
@@ -126,7 +126,7 @@ class Warp:
 
 
 class Fcpw:
-    """Without signs, which this library leaves to its callers."""
+    """This library computes unsigned distances."""
 
     def start(self):
         self.library = importlib.import_module("fcpw")
@@ -204,10 +204,10 @@ def prepare_points(points, grid):
 
 
 def query(distances):
-    answers, seconds = timed(peer.query)
+    results, seconds = timed(peer.query)
     if hasattr(peer, "unpack"):
-        answers = peer.unpack(answers)
-    numpy.asarray(answers, numpy.float64).tofile(distances)
+        results = peer.unpack(results)
+    numpy.asarray(results, numpy.float64).tofile(distances)
     return {"seconds": seconds - peer.built if hasattr(peer, "builds_in_query") else seconds}
 
 

@@ -1,6 +1,7 @@
-"""Mesh files read and written by libraries for Python.
+"""Reading and writing of mesh files by Python libraries.
 
-Jobs are named `LIBRARY_read` and `LIBRARY_write` and get the path; what was read last is what is written.
+The jobs are named `LIBRARY_read` and `LIBRARY_write` and receive the path. A write job writes the mesh
+of the last read job.
 """
 
 import importlib
@@ -30,7 +31,7 @@ class Open3d:
 
     def write(self, path):
         if not self.library.io.write_triangle_mesh(path, self.mesh, write_vertex_normals=False):
-            raise OSError(f"Open3D refuses to write {path}")
+            raise OSError(f"Open3D cannot write {path}")
 
 
 class Pymeshlab:
@@ -51,7 +52,7 @@ class Trimesh:
         self.library = importlib.import_module("trimesh")
 
     def read(self, path):
-        # Without processing, which welds and checks.
+        # Skip processing, which welds and checks.
         self.mesh = self.library.load(path, process=False, force="mesh")
         return len(self.mesh.faces)
 

@@ -1,4 +1,4 @@
-"""Answers questions line by line: the other end of `bench/src/python_peer.rs`."""
+"""Replies to requests line by line: the counterpart of `bench/src/python_peer.rs`."""
 
 import json
 import sys
@@ -6,23 +6,23 @@ import time
 
 
 def timed(work):
-    """What `work` returns, and the seconds that all threads of this process worked for it."""
+    """Returns the result of `work` and the CPU time of all threads of this process, in seconds."""
     begin = time.process_time()
     result = work()
     return result, time.process_time() - begin
 
 
 def serve(jobs):
-    """Reads a question `{"job": NAME, ...}` a line, and answers with what the function of that name returns for the rest.
+    """Reads a request `{"job": NAME, ...}` per line and replies with the result of that function.
 
-    The functions return dictionaries; those that measure have `seconds` among their keys. The first question is for the job `start`,
-    which may import what is slow or may be missing.
+    The function receives the other keys as arguments and returns a dictionary. Measurements have the
+    key `seconds`. The first request is the job `start`, which imports slow or optional packages.
     """
     jobs = {"start": lambda: {}, **jobs}
     for line in sys.stdin:
-        question = json.loads(line)
+        request = json.loads(line)
         try:
-            answer = json.dumps(jobs[question.pop("job")](**question), allow_nan=False, default=float)
+            reply = json.dumps(jobs[request.pop("job")](**request), allow_nan=False, default=float)
         except Exception as error:
-            answer = json.dumps({"error": f"{type(error).__name__}: {error}".splitlines()[0]})
-        print(answer, flush=True)
+            reply = json.dumps({"error": f"{type(error).__name__}: {error}".splitlines()[0]})
+        print(reply, flush=True)

@@ -1,4 +1,4 @@
-"""Libraries that find triangles which cross each other, or split long edges."""
+"""Libraries that find self-intersections or split long edges."""
 
 import numpy as np
 from peer import serve, timed
@@ -7,7 +7,7 @@ state = {}
 
 
 def load(vertices, triangles):
-    """Takes a mesh from two raw files of little-endian numbers: doubles and 32-bit integers, three a row."""
+    """Reads a mesh from two raw little-endian files: doubles and 32-bit integers, three per row."""
     state["vertices"] = np.fromfile(vertices, dtype="<f8").reshape(-1, 3)
     state["triangles"] = np.fromfile(triangles, dtype="<u4").reshape(-1, 3).astype(np.int64)
     state.pop("mesh_set", None)
@@ -15,8 +15,8 @@ def load(vertices, triangles):
     return {}
 
 
-def pymeshlab_crossings(output):
-    """Selects the triangles that cross others, and writes which to `output`, a byte each."""
+def pymeshlab_intersections(output):
+    """Finds the intersecting triangles and writes one byte per triangle to `output`."""
     import pymeshlab
 
     if "mesh_set" not in state:
@@ -28,20 +28,20 @@ def pymeshlab_crossings(output):
     return {"seconds": seconds}
 
 
-def libigl_crossings(output):
-    """The same by libigl, with exact arithmetic."""
+def libigl_intersections(output):
+    """As `pymeshlab_intersections`, but by libigl with exact arithmetic."""
     from igl.copyleft import cgal
 
     vertices, triangles = state["vertices"], state["triangles"]
     result, seconds = timed(lambda: cgal.remesh_self_intersections(vertices, triangles, detect_only=True))
-    is_crossing = np.zeros(len(triangles), dtype=np.uint8)
-    is_crossing[np.asarray(result[2]).ravel()] = 1
-    is_crossing.tofile(output)
+    intersects = np.zeros(len(triangles), dtype=np.uint8)
+    intersects[np.asarray(result[2]).ravel()] = 1
+    intersects.tofile(output)
     return {"seconds": seconds}
 
 
 def manifold_split(length):
-    """Splits edges longer than `length`; tells what became of size and volume."""
+    """Splits edges longer than `length`. Returns the size of the result and the change of the volume."""
     import manifold3d
 
     if "manifold" not in state:
@@ -50,7 +50,7 @@ def manifold_split(length):
     before = state["manifold"]
 
     def split():
-        # It works lazily; the count makes it work.
+        # The library evaluates lazily; the count forces the evaluation.
         after = before.refine_to_length(length)
         return after, after.num_tri()
 
@@ -69,8 +69,8 @@ def manifold_split(length):
 serve(
     {
         "load": load,
-        "pymeshlab_crossings": pymeshlab_crossings,
-        "libigl_crossings": libigl_crossings,
+        "pymeshlab_intersections": pymeshlab_intersections,
+        "libigl_intersections": libigl_intersections,
         "manifold_split": manifold_split,
     }
 )

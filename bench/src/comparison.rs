@@ -4,41 +4,42 @@ use serde::{Deserialize, Serialize};
 
 use crate::print_row;
 
-/// The environment variable that names the file to which comparisons are appended.
+/// Environment variable with the path of the file to which comparisons are appended.
 pub const ROWS_VARIABLE: &str = "ISOCHORE_BENCH_ROWS";
 
-/// What a job costs here and in a peer, measured in one run: a row of the table in the README.
+/// Costs of a job in isochore and in a peer, measured in one run: a row of the table in the README.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// What is done, to what.
+    /// Operation and input.
     pub job: String,
-    /// Who else does it: name and version.
+    /// Name and version of the peer.
     pub peer: String,
-    /// Of `ours` and `theirs`; a cost, so that less is better: nanoseconds a node, milliseconds, bytes a vertex.
+    /// Unit of `ours` and `theirs`. Smaller is better: ns/node, ms, bytes/vertex.
     pub unit: String,
-    /// What it costs here.
+    /// Cost in isochore.
     pub ours: f64,
-    /// What it costs the peer.
+    /// Cost in the peer.
     pub theirs: f64,
-    /// How far both results are from the truth, or from each other; empty where there is nothing to tell.
+    /// Errors of both results, or their difference. Empty if this does not apply.
     pub accuracy: String,
 }
 
 impl Comparison {
-    /// How many times cheaper it is here.
+    /// Cost of the peer divided by that of isochore.
     pub fn ratio(&self) -> f64 {
         self.theirs / self.ours
     }
 
-    /// Prints the heading of the rows that [`report`](Self::report) prints.
+    /// Prints the column headings of [`report`](Self::report).
     pub fn print_heading() {
         print_row(["peer", "unit", "ours", "theirs", "ratio", "accuracy"]);
     }
 
-    /// Prints a row of the table, and appends it as a line of JSON to the file that [`ROWS_VARIABLE`] names, if it names one.
+    /// Prints a row of the table. If [`ROWS_VARIABLE`] is set, appends the row as a line of JSON to
+    /// that file.
     ///
     /// # Panics
-    /// If that file cannot be written.
+    /// If the file cannot be written.
     pub fn report(&self) {
         let number = |value: f64| format!("{value:.3}");
         let ratio = format!("{:.2}", self.ratio());
@@ -52,7 +53,7 @@ impl Comparison {
 }
 
 #[test]
-fn a_row_survives_its_file() {
+fn a_row_survives_serialization() {
     let row = Comparison {
         job: "sum of \"a\"".into(),
         peer: "abacus 1.0".into(),

@@ -1,5 +1,5 @@
-//! Measurements side by side: everything that is compared runs in turn in one process, so that a slow moment of the machine
-//! hits all alike, and the medians are compared.
+//! Support for benchmarks. All jobs of a comparison run alternately in one process, so that a slow
+//! moment of the machine affects all of them. The medians are compared.
 
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
@@ -16,13 +16,13 @@ use cpu_time::ProcessTime;
 pub use comparison::{Comparison, ROWS_VARIABLE};
 pub use memory::peak_bytes;
 pub use python_peer::{PythonPeer, scratch};
-pub use scan::{crossing_scans, scan, scan_of_cube};
-pub use surface_peer::give_mesh;
+pub use scan::{intersecting_scans, scan, scan_of_cube};
+pub use surface_peer::load_mesh;
 
-/// Rounds of every measurement, after one that warms up.
+/// Rounds of every measurement, after one warm-up round.
 const ROUNDS: usize = 9;
 
-/// Median seconds of each of the `jobs`, run in turn.
+/// Runs the `jobs` alternately and returns the median wall time of each, in seconds.
 pub fn interleaved_medians(jobs: &mut [&mut dyn FnMut()]) -> Vec<f64> {
     let mut seconds = vec![Vec::with_capacity(ROUNDS); jobs.len()];
     for round in 0..=ROUNDS {
@@ -37,30 +37,33 @@ pub fn interleaved_medians(jobs: &mut [&mut dyn FnMut()]) -> Vec<f64> {
     seconds.iter_mut().map(|seconds| median(seconds)).collect()
 }
 
-/// Seconds that all threads of this process have worked so far. Steadier than the clock on a machine that others use too.
+/// CPU time of all threads of this process so far, in seconds. On a busy machine, it varies less
+/// than wall time.
 ///
 /// # Panics
-/// If the system does not tell.
+/// If the system does not report the CPU time.
 pub fn cpu_seconds() -> f64 {
-    ProcessTime::try_now().expect("the system counts").as_duration().as_secs_f64()
+    ProcessTime::try_now().expect("the system reports CPU times").as_duration().as_secs_f64()
 }
 
-/// The middle one of these numbers.
+/// Median of `values`, which are sorted.
 ///
 /// # Panics
-/// If there are none.
-pub fn median(seconds: &mut [f64]) -> f64 {
-    seconds.sort_unstable_by(f64::total_cmp);
-    seconds[seconds.len() / 2]
+/// If `values` is empty.
+pub fn median(values: &mut [f64]) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values[values.len() / 2]
 }
 
-/// Runs `work` on one thread that keeps to one core, as do the threads and programs that it starts, whatever the machine has.
+/// Runs `work` on one thread that is pinned to one core. The threads and processes that it starts
+/// inherit the core.
 ///
 /// # Panics
-/// If the system refuses a thread.
+/// If a thread cannot be started.
 pub fn on_one_core<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let pin = |_| {
-        // The first core has more to do for the system. Where cores cannot be chosen, one thread is all that can be had.
+        // Use the last core, because the first handles more system work. If cores cannot be chosen,
+        // the pool still has only one thread.
         if let Some(core) = core_affinity::get_core_ids().and_then(|cores| cores.last().copied()) {
             core_affinity::set_for_current(core);
         }
@@ -69,7 +72,19 @@ pub fn on_one_core<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     pool.expect("a thread can be started").install(work)
 }
 
-/// Prints a row of cells, each right-aligned in its column.
+/// `count` with its digits in groups of three, separated by commas.
+pub fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let (first, rest) = digits.split_at((digits.len() - 1) % 3 + 1);
+    rest.as_bytes().chunks(3).fold(first.to_owned(), |text, group| text + "," + &String::from_utf8_lossy(group))
+}
+
+/// Prints a row of right-aligned cells.
 pub fn print_row<const N: usize>(cells: [&str; N]) {
     println!("{}", cells.map(|cell| format!("{cell:>18}")).join(" "));
+}
+
+#[test]
+fn digits_are_grouped_by_three() {
+    assert_eq!([0, 999, 1000, 560_002, 11_000_000].map(grouped), ["0", "999", "1,000", "560,002", "11,000,000"]);
 }

@@ -1,4 +1,5 @@
-//! Libraries for Python, each in a process of its own that works on demand: so its rounds can alternate with ours.
+//! Python libraries, each in its own process. A process works on request, so its rounds can
+//! alternate with those of isochore.
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Lines, Write as _};
@@ -7,7 +8,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use serde_json::Value;
 
-/// Variables by which libraries are told how many threads to use.
+/// Environment variables that set the number of threads of libraries.
 const THREAD_VARIABLES: [&str; 6] = [
     "OMP_NUM_THREADS",
     "OPENBLAS_NUM_THREADS",
@@ -17,26 +18,28 @@ const THREAD_VARIABLES: [&str; 6] = [
     "TBB_NUM_THREADS",
 ];
 
-/// Where Debian has the headers of Eigen, which a package that has no wheel may look for.
+/// Folder of the Eigen headers on Debian, for packages that are built from source.
 const HEADERS: &str = "/usr/include/eigen3";
 
 /// A running program of `bench/peers`.
 ///
-/// It gets one line of JSON a question, `{"job": NAME, ...}`, and answers each with one line, which has the `seconds` that all its
-/// threads worked for it. Anything large goes through files of the [scratch folder](scratch).
+/// A request is one line of JSON, `{"job": NAME, ...}`. The reply is one line of JSON; measurements
+/// have the key `seconds` with the CPU time of all threads. Large data pass through files in the
+/// [scratch folder](scratch).
 #[derive(Debug)]
 pub struct PythonPeer {
     process: Child,
-    questions: ChildStdin,
-    answers: Lines<BufReader<ChildStdout>>,
+    requests: ChildStdin,
+    replies: Lines<BufReader<ChildStdout>>,
 }
 
 impl PythonPeer {
-    /// Starts `bench/peers/NAME.py` with these arguments and as many threads as the caller has cores, once the packages of
-    /// `bench/peers/requirements.txt` are installed in a virtual environment in the target folder.
+    /// Starts `bench/peers/NAME.py` with the given arguments and as many threads as the caller has
+    /// cores. First installs the packages of `bench/peers/requirements.txt` into a virtual
+    /// environment in the target folder, if necessary.
     ///
     /// # Errors
-    /// One line that says why there is no such peer on this machine.
+    /// A message of one line if the peer cannot be started.
     pub fn start(name: &str, arguments: &[&str]) -> Result<Self, String> {
         let python = environment()?;
         let threads = std::thread::available_parallelism().map_or(1, usize::from).to_string();
@@ -50,56 +53,56 @@ impl PythonPeer {
             .stdout(Stdio::piped())
             .spawn()
             .map_err(|error| format!("{name}: {error}"))?;
-        let (Some(questions), Some(answers)) = (process.stdin.take(), process.stdout.take()) else {
-            return Err(format!("{name}: no pipes"));
+        let (Some(requests), Some(replies)) = (process.stdin.take(), process.stdout.take()) else {
+            return Err(format!("{name}: the process has no pipes"));
         };
-        let mut peer = Self { process, questions, answers: BufReader::new(answers).lines() };
+        let mut peer = Self { process, requests, replies: BufReader::new(replies).lines() };
         peer.ask(&serde_json::json!({ "job": "start" })).map_err(|error| format!("{name}: {error}"))?;
         Ok(peer)
     }
 
-    /// Has it do the job that the question names, and waits for the answer.
+    /// Sends a request and waits for the reply.
     ///
     /// # Errors
-    /// What the program says went wrong, or that it has ended.
-    pub fn ask(&mut self, question: &Value) -> Result<Value, String> {
-        writeln!(self.questions, "{question}").map_err(|error| error.to_string())?;
-        // Libraries may print too; an answer is a line that is a JSON object.
-        let answer = loop {
-            let line = self.answers.next().ok_or("it has ended")?.map_err(|error| error.to_string())?;
+    /// The error message of the program, or a message that the process has ended.
+    pub fn ask(&mut self, request: &Value) -> Result<Value, String> {
+        writeln!(self.requests, "{request}").map_err(|error| error.to_string())?;
+        // Libraries can print too. A reply is a line that is a JSON object.
+        let reply = loop {
+            let line = self.replies.next().ok_or("the process has ended")?.map_err(|error| error.to_string())?;
             match serde_json::from_str::<Value>(&line) {
-                Ok(answer) if answer.is_object() => break answer,
+                Ok(reply) if reply.is_object() => break reply,
                 _ => {}
             }
         };
-        match answer["error"].as_str() {
+        match reply["error"].as_str() {
             Some(error) => Err(error.to_owned()),
-            None => Ok(answer),
+            None => Ok(reply),
         }
     }
 
-    /// [`ask`](Self::ask), for the seconds of work alone.
+    /// Sends a request and returns the CPU time of the reply, in seconds.
     ///
     /// # Errors
-    /// The same.
-    pub fn seconds(&mut self, question: &Value) -> Result<f64, String> {
-        let answer = self.ask(question)?;
-        answer["seconds"].as_f64().ok_or_else(|| format!("no seconds in {answer}"))
+    /// As [`ask`](Self::ask), and if the reply has no key `seconds`.
+    pub fn seconds(&mut self, request: &Value) -> Result<f64, String> {
+        let reply = self.ask(request)?;
+        reply["seconds"].as_f64().ok_or_else(|| format!("the reply {reply} has no key `seconds`"))
     }
 }
 
 impl Drop for PythonPeer {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // Ignore errors: the process may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
 }
 
-/// A folder for files that go between programs.
+/// Creates and returns the folder for files that are passed between programs.
 ///
 /// # Panics
-/// If it cannot be made.
+/// If it cannot be created.
 pub fn scratch() -> PathBuf {
     let folder = target().join("peers/scratch");
     fs::create_dir_all(&folder).expect("the target folder can be written");
@@ -115,13 +118,14 @@ fn target() -> PathBuf {
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target"), PathBuf::from)
 }
 
-/// The interpreter of the peers' virtual environment, in which each package of `requirements.txt` is installed that can be.
+/// Python interpreter of the virtual environment of the peers. Installs those packages of
+/// `requirements.txt` that can be installed, if necessary.
 fn environment() -> Result<PathBuf, String> {
     let folder = target().join("peers/environment");
     let python = folder.join("bin/python");
-    let wanted = fs::read_to_string(peers().join("requirements.txt")).map_err(|error| error.to_string())?;
+    let requirements = fs::read_to_string(peers().join("requirements.txt")).map_err(|error| error.to_string())?;
     let stamp = folder.join("installed.txt");
-    if fs::read_to_string(&stamp).is_ok_and(|installed| installed == wanted) {
+    if fs::read_to_string(&stamp).is_ok_and(|installed| installed == requirements) {
         return Ok(python);
     }
     let run = |command: &mut Command| match command.stdout(Stdio::null()).status() {
@@ -130,12 +134,12 @@ fn environment() -> Result<PathBuf, String> {
         Err(error) => Err(format!("{command:?}: {error}")),
     };
     run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;
-    for package in wanted.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
-        // Whoever needs a package that cannot be installed says so when it is imported.
+    for package in requirements.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        // Ignore failures: a peer reports a missing package when it imports it.
         let mut install = Command::new(&python);
         install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", package]);
         let _ = run(install.env("CPLUS_INCLUDE_PATH", HEADERS));
     }
-    fs::write(stamp, wanted).map_err(|error| error.to_string())?;
+    fs::write(stamp, requirements).map_err(|error| error.to_string())?;
     Ok(python)
 }

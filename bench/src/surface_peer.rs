@@ -1,4 +1,4 @@
-//! The libraries behind `bench/peers/surface.py`, and the mesh that they work on.
+//! Input of the libraries in `bench/peers/surface.py`.
 
 use std::fs;
 use std::path::PathBuf;
@@ -8,14 +8,14 @@ use serde_json::json;
 
 use crate::{PythonPeer, scratch};
 
-/// Gives a mesh to the peer.
+/// Sends `mesh` to the peer.
 ///
 /// # Errors
-/// What the peer says went wrong.
+/// The error message of the peer.
 ///
 /// # Panics
 /// If the scratch folder cannot be written.
-pub fn give_mesh(peer: &mut PythonPeer, mesh: &TriMesh) -> Result<(), String> {
+pub fn load_mesh(peer: &mut PythonPeer, mesh: &TriMesh) -> Result<(), String> {
     let write = |name: &str, bytes: Vec<u8>| -> PathBuf {
         let path = scratch().join(name);
         fs::write(&path, bytes).expect("the scratch folder can be written");

@@ -1,9 +1,9 @@
-//! A guard against hot loops getting slower: the instructions that each takes, counted by Callgrind, beside those in
-//! `bench/instructions.json`. Counts do not depend on how busy the machine is.
+//! Regression test of hot loops: compares their instruction counts under Callgrind with
+//! `bench/instructions.json`. The counts do not depend on the load of the machine.
 //!
-//! Where a change is meant, or the compiler is another one, `cargo xtask instructions` writes the counts anew.
+//! After an intended change or with a new compiler, `cargo xtask instructions` updates the counts.
 
-#![allow(clippy::print_stderr, reason = "says what differs")]
+#![allow(clippy::print_stderr, reason = "reports the differences")]
 
 use std::{collections::BTreeMap, env, fs, ops::Range, path::Path, process::Command, sync::Arc};
 
@@ -21,17 +21,18 @@ use isochore_sculpt::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Share by which a count may grow. Larger lets loops get slower step by step; smaller fails for what another library of the
-/// system counts otherwise.
+/// Largest relative growth of a count. Larger: loops can become slower gradually. Smaller: other
+/// versions of system libraries fail the test.
 const TOLERANCE: f64 = 0.03;
 
-/// The same where the compiler is not the one of the counts, which moves them by itself.
+/// The same for a compiler that differs from that of the counts, because another compiler changes
+/// them.
 const TOLERANCE_OF_COMPILER: f64 = 0.25;
 
-/// Asks for the counts to be written.
+/// Environment variable that requests an update of the counts.
 const WRITE_VARIABLE: &str = "ISOCHORE_WRITE_INSTRUCTIONS";
 
-/// The loops; each is an ignored test below.
+/// The measured loops. Each is an ignored test in this file.
 const LOOPS: [&str; 10] = [
     "distance_grid",
     "advect_analytic",
@@ -59,11 +60,11 @@ fn no_loop_takes_more_instructions() {
         instructions: LOOPS.iter().map(|&name| (name.to_owned(), instructions(name))).collect(),
     };
     if env::var_os(WRITE_VARIABLE).is_some() {
-        let text = serde_json::to_string_pretty(&counted).expect("numbers and strings");
+        let text = serde_json::to_string_pretty(&counted).expect("the counts can be serialized");
         return fs::write(path, text + "\n").expect("the folder can be written");
     }
-    let text = fs::read_to_string(path).expect("counts to compare with");
-    let baseline: Baseline = serde_json::from_str(&text).expect("counts");
+    let text = fs::read_to_string(path).expect("bench/instructions.json can be read");
+    let baseline: Baseline = serde_json::from_str(&text).expect("bench/instructions.json has the counts");
     let tolerance = if baseline.rustc == counted.rustc { TOLERANCE } else { TOLERANCE_OF_COMPILER };
     let mut slower = Vec::new();
     for (name, &count) in &counted.instructions {
@@ -77,13 +78,13 @@ fn no_loop_takes_more_instructions() {
     assert!(slower.is_empty(), "more instructions than in bench/instructions.json: {slower:?}");
 }
 
-/// The compiler, as it names itself.
+/// Version of the compiler.
 fn rustc() -> String {
-    let output = Command::new("rustc").arg("--version").output().expect("a compiler");
+    let output = Command::new("rustc").arg("--version").output().expect("rustc can be started");
     String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }
 
-/// Instructions of one of the loops.
+/// Counts the instructions of one of the loops.
 fn instructions(name: &str) -> u64 {
     let program = env::current_exe().expect("this program has a path");
     let mut valgrind = Command::new("valgrind");
@@ -91,14 +92,14 @@ fn instructions(name: &str) -> u64 {
         .args(["--tool=callgrind", "--toggle-collect=*guarded*", "--callgrind-out-file=/dev/null"])
         .arg(program)
         .args(["--ignored", "--exact", name, "--test-threads=1"]);
-    let output = valgrind.output().expect("valgrind, which is in a package of that name");
+    let output = valgrind.output().expect("valgrind can be started; install the package valgrind");
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{name}: {text}");
     let count = text.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok());
-    count.unwrap_or_else(|| panic!("{name}: no count in {text}"))
+    count.unwrap_or_else(|| panic!("{name}: the output has no count: {text}"))
 }
 
-/// What is counted: nothing outside of this function.
+/// Runs `work`. Callgrind counts only instructions in this function.
 #[inline(never)]
 fn guarded<T>(work: impl FnOnce() -> T) {
     std::hint::black_box(work());
@@ -110,14 +111,14 @@ fn count<T>(work: impl FnOnce() -> T + Send) {
 
 fn advect(tool: Arc<dyn Distance>) {
     let points = primitives::icosphere(1.0, 4).positions;
-    let tool = Arc::new(Tool::new(tool, 0.3, Profile::Quintic).expect("a support"));
-    let way = vec![Pose::at(DVec3::new(0.0, 0.9, -0.2)), Pose::at(DVec3::new(0.0, 0.9, 0.2))];
-    let stroke = Stroke::Move(Move::new(tool, way, 0.125).expect("a way"));
+    let tool = Arc::new(Tool::new(tool, 0.3, Profile::Quintic).expect("a positive support"));
+    let keys = vec![Pose::at(DVec3::new(0.0, 0.9, -0.2)), Pose::at(DVec3::new(0.0, 0.9, 0.2))];
+    let stroke = Stroke::Move(Move::new(tool, keys, 0.125).expect("a valid path"));
     count(|| advect_points(&points, std::slice::from_ref(&stroke), &NoProgress));
 }
 
 #[test]
-#[ignore = "counted by another test"]
+#[ignore = "run by `no_loop_takes_more_instructions` under Callgrind"]
 fn distance_grid() {
     let mesh = scan(3);
     let options = DistanceFieldOptions { resolution: 24, ..DistanceFieldOptions::default() };
@@ -125,57 +126,57 @@ fn distance_grid() {
 }
 
 #[test]
-#[ignore = "counted by another test"]
+#[ignore = "run by `no_loop_takes_more_instructions` under Callgrind"]
 fn advect_analytic() {
-    advect(Arc::new(Capsule::new(0.15, 0.8).expect("a length")));
+    advect(Arc::new(Capsule::new(0.15, 0.8).expect("a positive length")));
 }
 
 #[test]
-#[ignore = "counted by another test"]
+#[ignore = "run by `no_loop_takes_more_instructions` under Callgrind"]
 fn advect_sampled() {
     let mesh = primitives::icosphere(0.4, 2);
     let options =
         DistanceFieldOptions { resolution: 16, padding: Padding::Reach(0.3), ..DistanceFieldOptions::default() };
-    advect(Arc::new(DistanceField::new(&mesh, &options, &NoProgress).expect("a sound mesh")));
+    advect(Arc::new(DistanceField::new(&mesh, &options, &NoProgress).expect("a valid mesh")));
 }
 
 #[test]
-#[ignore = "counted by another test"]
+#[ignore = "run by `no_loop_takes_more_instructions` under Callgrind"]
 fn split() {
     let mesh = scan(4);
     count(|| mesh.split_to_length(0.02, 1_000_000, &NoProgress));
 }
 
 #[test]
-#[ignore = "counted by another test"]
+#[ignore = "run by `no_loop_takes_more_instructions` under Callgrind"]
 fn self_intersection() {
     let mesh = scan(5);
     count(|| SelfIntersections::of(&mesh, &NoProgress));
 }
 
-/// Ten moves of a brush over a ball, in whose reach edges are split, collapsed and flipped.
+/// Ten moves of a brush over a ball. Edges within its reach are split, collapsed and flipped.
 #[test]
-#[ignore = "counted by another test"]
+#[ignore = "run by `no_loop_takes_more_instructions` under Callgrind"]
 fn session_moves() {
     let shape = ToolShape::Sphere(Sphere { radius: 0.15 });
     let brush = recipe::Tool { shape, support: 0.2, profile: recipe::Profile::Quintic, free_form: 0.0 };
-    let brush = Arc::new(SessionTool::new("brush", brush, &Meshes::new(), &NoProgress).expect("a ball"));
+    let brush = Arc::new(SessionTool::new("brush", brush, &Meshes::new(), &NoProgress).expect("a valid tool"));
     let refine = InteractiveRefinement { longest: Some(0.03), ..InteractiveRefinement::default() };
-    let mut session = Session::open(primitives::icosphere(1.0, 5), SessionOptions::default()).expect("a ball");
-    session.begin_stroke(&brush, StrokeOptions { refine: Some(refine) }).expect("no stroke before");
+    let mut session = Session::open(primitives::icosphere(1.0, 5), SessionOptions::default()).expect("a valid mesh");
+    session.begin_stroke(&brush, StrokeOptions { refine: Some(refine) }).expect("no open stroke");
     let mut inserted = 0;
-    let mut travel = |moves: Range<u8>| {
+    let mut run_moves = |moves: Range<u8>| {
         for step in moves.map(f64::from) {
             let pose = Pose::at(DVec3::new(0.01 * step, 0.0, 1.2 - 0.005 * step));
-            inserted += session.move_to(&pose, step / 60.0).expect("a short way").inserted_vertices;
+            inserted += session.move_to(&pose, step / 60.0).expect("a valid move").inserted_vertices;
         }
     };
-    travel(0..10);
-    count(|| travel(10..20));
+    run_moves(0..10);
+    count(|| run_moves(10..20));
     assert!(inserted > 100, "{inserted}");
 }
 
-/// Counts the reading of a file of this name, with texture coordinates and normals.
+/// Counts the instructions of reading a file with texture coordinates and normals.
 fn read(name: &str) {
     let path = scratch().join(name);
     let mut mesh = scan(4);
@@ -188,7 +189,7 @@ fn read(name: &str) {
 }
 
 #[test]
-#[ignore = "counted by another test"]
+#[ignore = "run by `no_loop_takes_more_instructions` under Callgrind"]
 fn read_obj() {
     let path = scratch().join("instructions.obj");
     io::write(&path, &scan(4)).expect("the scratch folder can be written");
@@ -196,19 +197,19 @@ fn read_obj() {
 }
 
 #[test]
-#[ignore = "counted by another test"]
+#[ignore = "run by `no_loop_takes_more_instructions` under Callgrind"]
 fn read_glb() {
     read("instructions.glb");
 }
 
 #[test]
-#[ignore = "counted by another test"]
+#[ignore = "run by `no_loop_takes_more_instructions` under Callgrind"]
 fn read_ply() {
     read("instructions.ply");
 }
 
 #[test]
-#[ignore = "counted by another test"]
+#[ignore = "run by `no_loop_takes_more_instructions` under Callgrind"]
 fn frames() {
     let spine = Spine::sample(&TrigonometricCurve::torus_knot(), 10_000).expect("a regular curve");
     count(|| rotation_minimizing_frames(&spine, -DVec3::X, FrameMethod::DoubleReflection, Default::default()));

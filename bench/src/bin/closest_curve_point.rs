@@ -1,5 +1,6 @@
-//! Closest points on a spline, on one core: points near it as a strip field asks for, and points anywhere, beside the
-//! nearest of a thousand samples of the spline, whose error is in the last column.
+//! Closest points on a spline on one core, for points near the spline (as in a strip field) and for
+//! points anywhere. Compared with the nearest of a thousand samples, whose error is in the last
+//! column.
 
 use glam::DVec3;
 use isochore_bench::{interleaved_medians, on_one_core, print_row};
@@ -10,18 +11,18 @@ const SAMPLES: usize = 1_000;
 
 fn main() {
     on_one_core(|| {
-        print_row(["points", "queries", "M queries/s", "1000 samples M/s", "ratio", "samples' error"]);
+        print_row(["points", "queries", "M queries/s", "1000 samples M/s", "ratio", "error of samples"]);
         for count in [4, 16, 64] {
-            // A knot-like curve of turning and returning parts.
+            // A knot-like curve.
             let points: Vec<DVec3> = (0..count)
                 .map(|i| f64::from(i) / f64::from(count - 1))
-                .map(|share| {
-                    let angle = 2.0 + 9.0 * share;
-                    DVec3::new(angle.cos() * (1.0 + share), angle.sin(), 0.5 * (5.0 * share).sin())
+                .map(|fraction| {
+                    let angle = 2.0 + 9.0 * fraction;
+                    DVec3::new(angle.cos() * (1.0 + fraction), angle.sin(), 0.5 * (5.0 * fraction).sin())
                 })
                 .collect();
             let spline =
-                CubicSpline::open(&points, Parametrization::Centripetal, EndCondition::Natural).expect("good points");
+                CubicSpline::open(&points, Parametrization::Centripetal, EndCondition::Natural).expect("valid points");
             measure(count, "near", &spline, 0.1);
             measure(count, "anywhere", &spline, 2.0);
         }

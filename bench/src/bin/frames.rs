@@ -1,16 +1,17 @@
-//! Frames per second of double reflection on one core: one curve in double precision, and sixteen curves abreast in
-//! single precision, beside a plain loop as the paper prints it (W. Wang et al., 2008, table I).
+//! Frames per second of double reflection on one core: one curve in double precision, and a batch
+//! of sixteen curves in single precision. Compared with a plain implementation of the published
+//! loop (W. Wang et al., 2008, table I).
 
 use glam::DVec3;
 use isochore_bench::{interleaved_medians, on_one_core, print_row};
 use isochore_curve::{BATCH_SIZE, FrameMethod, Spine, SpineBatch, TrigonometricCurve, rotation_minimizing_frames};
 
-/// Samples that stay in the second-level cache, and samples that do not.
+/// Numbers of segments: one fits into the second-level cache, the other does not.
 const SEGMENTS: [usize; 2] = [1_000, 100_000];
 
 fn main() {
     on_one_core(|| {
-        print_row(["segments", "plain M/s", "one curve M/s", "ratio", "16 abreast M/s", "ratio"]);
+        print_row(["segments", "plain M/s", "one curve M/s", "ratio", "batch of 16 M/s", "ratio"]);
         for segments in SEGMENTS {
             measure(segments);
         }
@@ -22,9 +23,9 @@ fn measure(segments: usize) {
     let points: Vec<[f64; 3]> = (0..=segments).map(|i| spine.point(i).to_array()).collect();
     let tangents: Vec<[f64; 3]> = (0..=segments).map(|i| spine.tangent(i).to_array()).collect();
     let mut plain_frames = vec![[[0.0; 3]; 3]; segments + 1];
-    let abreast = SpineBatch::new(&vec![spine.clone(); BATCH_SIZE]).expect("equal curves");
-    let mut references = abreast.references();
-    // About a million frames a round, whatever the length.
+    let batch = SpineBatch::new(&vec![spine.clone(); BATCH_SIZE]).expect("a valid batch");
+    let mut references = batch.references();
+    // About a million frames per round for every length.
     let repeats = 1_000_000 / segments;
     let seconds = interleaved_medians(&mut [
         &mut || {
@@ -47,7 +48,7 @@ fn measure(segments: usize) {
         &mut || {
             for _ in 0..repeats {
                 let starts = [-DVec3::X; BATCH_SIZE];
-                std::hint::black_box(&abreast).propagate(&starts, &mut references).expect("a normal vector");
+                std::hint::black_box(&batch).propagate(&starts, &mut references).expect("a normal vector");
                 std::hint::black_box(&mut references);
             }
         },
@@ -64,7 +65,7 @@ fn measure(segments: usize) {
     ]);
 }
 
-/// Table I, line by line, with frames (r, s, t).
+/// Table I of the paper line by line, with frames (r, s, t).
 fn plain(points: &[[f64; 3]], tangents: &[[f64; 3]], reference: [f64; 3], frames: &mut [[[f64; 3]; 3]]) {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let minus = |a: [f64; 3], factor: f64, b: [f64; 3]| std::array::from_fn(|k| a[k] - factor * b[k]);

@@ -1,35 +1,37 @@
-//! Reading and writing of mesh files on one core, beside the libraries for each format and those for Python.
+//! Reading and writing of mesh files on one core, compared with Rust libraries for each format and
+//! with Python libraries.
 //!
-//! What reading does beyond the libraries: seams are welded, indices and coordinates checked, everything is in double precision,
-//! and attributes go to corners.
+//! Unlike the Rust libraries, isochore also welds seams, checks indices and coordinates, uses
+//! double precision, and stores attributes per corner.
 //!
-//! Beside libraries for Rust each reading is the first of a process, whose memory the system has yet to hand out, as in a program
-//! that reads a file. Those for Python go on in one process, as we do beside them, and may use memory again.
+//! In comparisons with Rust libraries, each read is the first of its process, so the system must
+//! still provide its memory. In comparisons with Python libraries, both sides keep one process and
+//! can reuse memory.
 //!
-//! Arguments are the endings of the formats to compare; without any it is all.
+//! Arguments: file extensions of the formats to compare. Default: all formats.
 
-#![expect(clippy::print_stdout, clippy::print_stderr, reason = "benchmarks print their results, and who is missing")]
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "benchmarks print their results and missing peers")]
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Cursor};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use isochore_bench::{Comparison, PythonPeer, cpu_seconds, median, on_one_core, scratch};
+use isochore_bench::{Comparison, PythonPeer, cpu_seconds, grouped, median, on_one_core, scratch};
 use isochore_mesh::io::{self, Format};
 use isochore_mesh::{TriMesh, primitives};
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{BeginList, PropertyAccess, PropertyAccessResult};
 use serde_json::json;
 
-/// Rounds after one that warms up.
+/// Rounds after one warm-up round.
 const ROUNDS: usize = 7;
 
-/// The formats that are compared, with the ending of their files.
+/// Compared formats with their file extensions.
 const FORMATS: [(Format, &str); 4] =
     [(Format::Obj, "obj"), (Format::Glb, "glb"), (Format::Ply, "ply"), (Format::Stl, "stl")];
 
-/// Libraries for Python: the beginning of their jobs' names, and how they are called.
+/// Python libraries: prefix of their job names, and display name.
 const PEERS: [(&str, &str); 4] = [
     ("meshlib", "MeshLib 3.1.4"),
     ("open3d", "Open3D 0.20.0"),
@@ -37,7 +39,7 @@ const PEERS: [(&str, &str); 4] = [
     ("trimesh", "trimesh 5.2.0"),
 ];
 
-/// First argument of a process that reads one file; the next are who reads it and its path.
+/// First argument of a process that reads one file. The next arguments are the reader and the path.
 const READ_ONCE: &str = "read-once";
 
 fn main() {
@@ -53,7 +55,10 @@ fn main() {
         let begin = cpu_seconds();
         let welded = mesh.clone().welded();
         let milliseconds = 1e3 * (cpu_seconds() - begin);
-        println!("welding {} vertices takes {milliseconds:.1} ms, the copy included", welded.positions.len());
+        println!(
+            "welding {} vertices takes {milliseconds:.1} ms, including the copy of the mesh",
+            welded.positions.len()
+        );
         let normals = mesh.vertex_normals();
         mesh.corner.normals = by_corner(&mesh, |vertex| normals[vertex].as_vec3());
         compare_formats(&mesh, ", with normals", &FORMATS, &PEERS);
@@ -74,16 +79,17 @@ fn by_corner<T>(mesh: &TriMesh, value: impl Fn(usize) -> T) -> Vec<[T; 3]> {
     mesh.triangles.iter().map(|triangle| triangle.map(|vertex| value(vertex as usize))).collect()
 }
 
-/// Seconds that we or the library for Rust take for a file, the first that this process reads.
+/// CPU time in seconds for reading a file with isochore or with the Rust library. It is the first
+/// file that this process reads.
 fn read_once(reader: &str, path: &Path) -> f64 {
     let library = Format::of_path(path).and_then(library_of);
     match (reader, library) {
         ("library", Some((_, library))) => timed(|| library(path)),
-        _ => timed(|| io::read(path).expect("a mesh").triangles.len()),
+        _ => timed(|| io::read(path).expect("a readable mesh").triangles.len()),
     }
 }
 
-/// The same in a process of its own, on the same core.
+/// Runs [`read_once`] in a new process on the same core.
 fn first_reading(reader: &str, path: &Path) -> f64 {
     let program = std::env::current_exe().expect("this program has a path");
     let output =
@@ -91,41 +97,43 @@ fn first_reading(reader: &str, path: &Path) -> f64 {
     String::from_utf8_lossy(&output.stdout).trim().parse().expect("the file was read")
 }
 
-/// A peer's job in one round, in seconds of work; none where the peer cannot do it.
+/// Runs a job of a peer and returns its CPU time in seconds, or `None` if the peer does not support
+/// it.
 type Job<'a> = Box<dyn FnMut() -> Option<f64> + 'a>;
 
 fn compare_formats(mesh: &TriMesh, with: &str, formats: &[(Format, &str)], peers: &[(&str, &str)]) {
     let mut python = PythonPeer::start("files", &[]);
     if let Err(error) = &python {
-        eprintln!("peers in Python are missing: {error}");
+        eprintln!("the peers in Python are missing: {error}");
     }
     Comparison::print_heading();
-    let wanted: Vec<String> = std::env::args().skip(1).collect();
-    for &(format, ending) in formats {
-        if !wanted.is_empty() && !wanted.iter().any(|wanted| wanted == ending) {
+    let selected: Vec<String> = std::env::args().skip(1).collect();
+    for &(format, extension) in formats {
+        if !selected.is_empty() && !selected.iter().any(|selected| selected == extension) {
             continue;
         }
-        let path = scratch().join("io").with_extension(ending);
+        let path = scratch().join("io").with_extension(extension);
         let write = |path: &Path| {
             let file = File::create(path).expect("the scratch folder can be written");
             let mut file = BufWriter::new(file);
-            io::write_to(format, mesh, &mut file).expect("the mesh is sound");
+            io::write_to(format, mesh, &mut file).expect("a valid mesh");
         };
         write(&path);
         let row = |job: String, peer: &str, measured: Option<[f64; 2]>| {
             let Some([ours, theirs]) = measured else { return };
             let scale = 1e9 / mesh.triangles.len() as f64;
             let (ours, theirs) = (scale * ours, scale * theirs);
-            let job = format!("{job} of {} triangles{with}", mesh.triangles.len());
-            let unit = "ns a triangle".into();
+            let job = format!("{job}, {} triangles{with}", grouped(mesh.triangles.len()));
+            let unit = "ns/triangle".into();
             Comparison { job, peer: peer.into(), unit, ours, theirs, accuracy: String::new() }.report();
         };
-        let read_job = format!("reading {}", ending.to_uppercase());
+        let read_job = format!("read {}", extension.to_uppercase());
         if let Some((peer, _)) = library_of(format) {
             let mut theirs: Job<'_> = Box::new(|| Some(first_reading("library", &path)));
             row(read_job.clone(), peer, interleaved(&mut || first_reading("isochore", &path), &mut theirs));
         }
-        let mut read_ours = || timed(|| std::hint::black_box(io::read(&path).expect("a mesh")).triangles.len());
+        let mut read_ours =
+            || timed(|| std::hint::black_box(io::read(&path).expect("a readable mesh")).triangles.len());
         let Ok(python) = &mut python else { continue };
         for (name, peer) in peers {
             let mut ask =
@@ -135,16 +143,17 @@ fn compare_formats(mesh: &TriMesh, with: &str, formats: &[(Format, &str)], peers
             drop(theirs);
             row(read_job.clone(), peer, measured);
             if measured.is_some() && with.is_empty() {
-                let copy = scratch().join("io-copy").with_extension(ending);
+                let copy = scratch().join("io-copy").with_extension(extension);
                 let mut theirs: Job<'_> = Box::new(|| ask("write", &copy).ok());
                 let measured = interleaved(&mut || timed(|| write(&path)), &mut theirs);
-                row(format!("writing {}", ending.to_uppercase()), peer, measured);
+                row(format!("write {}", extension.to_uppercase()), peer, measured);
             }
         }
     }
 }
 
-/// Median seconds of both, run in turn; none where the peer cannot do it.
+/// Runs both alternately and returns the median CPU times in seconds, or `None` if the peer does
+/// not support the job.
 fn interleaved(ours: &mut dyn FnMut() -> f64, theirs: &mut Job<'_>) -> Option<[f64; 2]> {
     let mut seconds = [Vec::new(), Vec::new()];
     for round in 0..=ROUNDS {
@@ -165,7 +174,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> f64 {
 /// Reads a file and returns a number that depends on it.
 type Reader = fn(&Path) -> f64;
 
-/// The library for Rust that reads a format, each in its own manner: no welding, no checks.
+/// Rust library that reads a format. The libraries do not weld or check.
 fn library_of(format: Format) -> Option<(&'static str, Reader)> {
     match format {
         Format::Obj => Some(("tobj 4.0.5", read_with_tobj)),
@@ -183,15 +192,15 @@ fn bytes(path: &Path) -> Vec<u8> {
 fn read_with_tobj(path: &Path) -> f64 {
     let no_materials = |_: &Path| Ok(Default::default());
     let read = tobj::load_obj_buf(&mut Cursor::new(bytes(path)), &tobj::LoadOptions::default(), no_materials);
-    read.expect("the file is sound").0[0].mesh.positions[0]
+    read.expect("a valid file").0[0].mesh.positions[0]
 }
 
 fn read_with_stl_io(path: &Path) -> f64 {
-    let read = stl_io::read_stl(&mut Cursor::new(bytes(path))).expect("the file is sound");
+    let read = stl_io::read_stl(&mut Cursor::new(bytes(path))).expect("a valid file");
     f64::from(read.vertices[0].0[0])
 }
 
-/// Coordinates and normal of a vertex, or indices of a face.
+/// A vertex with coordinates and normal, or a face with indices.
 struct PlyElement {
     position: [f64; 3],
     normal: [f32; 3],
@@ -226,14 +235,14 @@ impl PropertyAccess for PlyElement {
 
 fn read_with_ply_rs(path: &Path) -> f64 {
     let parser = Parser::<PlyElement>::new();
-    let read = parser.read_ply(&mut Cursor::new(bytes(path))).expect("the file is sound");
+    let read = parser.read_ply(&mut Cursor::new(bytes(path))).expect("a valid file");
     let face = &read.payload["face"][0];
     let vertex = &read.payload["vertex"][face.indices[0] as usize];
     vertex.position[0] + f64::from(vertex.normal[0])
 }
 
 fn read_with_gltf(path: &Path) -> f64 {
-    let document = gltf::Gltf::from_slice(&bytes(path)).expect("the file is sound");
+    let document = gltf::Gltf::from_slice(&bytes(path)).expect("a valid file");
     let mut sum = 0.0;
     for primitive in document.meshes().flat_map(|mesh| mesh.primitives()) {
         let reader = primitive.reader(|_| document.blob.as_deref());

@@ -1,5 +1,6 @@
-//! What refinement costs and brings: a press and a turning rod, on one core, for three shares of volume asked for. The limit
-//! is carrying the vertices of the result once, with no refinement around it.
+//! Cost and accuracy of refinement on one core: a press and a turning rod, for three volume
+//! tolerances. The lower bound of the cost is advecting the vertices of the result once, without
+//! refinement.
 
 use std::sync::Arc;
 
@@ -12,7 +13,7 @@ use isochore_mesh::{Capsule, Distance, NoProgress, Sphere, primitives};
 
 fn main() {
     on_one_core(|| {
-        print_row(["stroke", "volume asked", "triangles", "drift", "M triangles/s", "times the limit"]);
+        print_row(["stroke", "tolerance", "triangles", "volume drift", "M triangles/s", "ratio to bound"]);
         for (name, stroke) in [("press", press()), ("rod", rod())] {
             for volume in [1e-3, 1e-4, 1e-5] {
                 measure(name, &stroke, volume);
@@ -26,7 +27,7 @@ fn measure(name: &str, stroke: &Stroke, volume: f64) {
     let strokes = std::slice::from_ref(stroke);
     let refine = RefineOptions { volume, ..RefineOptions::default() };
     let options = DeformOptions { refine: Some(refine), lock: false };
-    let run = || deform(&object, strokes, &options, &NoProgress).expect("nothing cancels");
+    let run = || deform(&object, strokes, &options, &NoProgress).expect("the deformation is not canceled");
     let result = run();
     let seconds = interleaved_medians(&mut [&mut || drop(std::hint::black_box(run())), &mut || {
         drop(std::hint::black_box(advect_points(&result.rest.positions, strokes, &NoProgress)))
@@ -43,18 +44,18 @@ fn measure(name: &str, stroke: &Stroke, volume: f64) {
 }
 
 fn tool(shape: impl Distance + 'static) -> Arc<Tool> {
-    Arc::new(Tool::new(Arc::new(shape), 0.3, Profile::Quintic).expect("a support"))
+    Arc::new(Tool::new(Arc::new(shape), 0.3, Profile::Quintic).expect("a positive support"))
 }
 
 fn press() -> Stroke {
-    let ball = tool(Sphere::new(0.4).expect("a radius"));
+    let ball = tool(Sphere::new(0.4).expect("a positive radius"));
     let keys = vec![Pose::at(DVec3::Z * 1.75), Pose::at(DVec3::Z)];
-    Stroke::Move(Move::new(ball, keys, 0.125).expect("a way"))
+    Stroke::Move(Move::new(ball, keys, 0.125).expect("a valid path"))
 }
 
 fn rod() -> Stroke {
-    let rod = tool(Capsule::new(0.15, 0.8).expect("a length"));
+    let rod = tool(Capsule::new(0.15, 0.8).expect("a positive length"));
     let at = DVec3::new(0.0, 0.9, 0.0);
     let turned = Pose { rotation: rotation_from_vector(DVec3::Y * std::f64::consts::FRAC_PI_2), translation: at };
-    Stroke::Move(Move::new(rod, vec![Pose::at(at), turned], 0.125).expect("a way"))
+    Stroke::Move(Move::new(rod, vec![Pose::at(at), turned], 0.125).expect("a valid path"))
 }

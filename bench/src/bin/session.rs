@@ -1,6 +1,11 @@
-//! A sculpting session at the pace of a frame: a recorded stroke of 300 moves over spheres of 250,000 to 4,000,000 triangles, by a
-//! brush that touches equally many vertices of each, while edges are split, collapsed and flipped. Every stage of the moves, what
-//! undo takes, and what it holds; of seven strokes the one in the middle.
+//! An interactive sculpting session: a recorded stroke of 300 moves on spheres of 250,000 to
+//! 4,000,000 triangles.
+//!
+//! The brush touches the same number of vertices on each sphere, while edges are split, collapsed
+//! and flipped. Reports the time of each stage of a move, and the time and memory of undo. The
+//! reported run is the median of seven.
+
+#![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
 use std::{f64::consts::FRAC_PI_4, sync::Arc, time::Instant};
 
@@ -14,21 +19,22 @@ use isochore_sculpt::{
     session::{InteractiveRefinement, MoveReceipt, Session, SessionOptions, SessionTool, StrokeOptions, StrokeReceipt},
 };
 
-/// Cells along each edge of the cubes that are blown up to spheres; twelve triangles a cell squared.
+/// Cells along each edge of the cubes that are projected to spheres. A cube has 12 n² triangles.
 const SEGMENTS: [usize; 3] = [144, 289, 577];
 
-/// The one by which the frame is judged, of a million triangles.
-const JUDGED: usize = 1;
+/// Index of the reference mesh, which has a million triangles.
+const REFERENCE: usize = 1;
 
-/// Share of the surface of a million triangles within reach of the brush, so that a move in the middle of its way in and out touches
-/// two vertices in a hundred.
+/// Fraction of the surface of the reference mesh within reach of the brush at its mean height. A
+/// median move touches two percent of the vertices.
 const REACHED: f64 = 0.023;
 
 const MOVES: usize = 300;
 
 const ROUNDS: usize = 7;
 
-/// How far the middle of the brush is above the surface at rest, as a share of its reach: the core does not touch.
+/// Height of the brush center above the surface at rest, relative to its reach. The core does not
+/// touch the surface.
 const HEIGHT: f64 = 0.7;
 
 fn main() {
@@ -39,59 +45,65 @@ fn main() {
         "p99 ms",
         "CPU ms",
         "select",
-        "flow",
+        "advect",
         "refine",
         "index",
         "buffers",
     ]);
-    // In turn, so that what else the machine does in a while is in all of them.
+    // Alternate between the meshes, so that other load on the machine affects all of them.
     let mut rounds: Vec<Vec<Run>> = SEGMENTS.iter().map(|_| Vec::new()).collect();
     for _ in 0..ROUNDS {
         SEGMENTS.into_iter().zip(&mut rounds).for_each(|(segments, runs)| runs.push(Run::of(segments)));
     }
-    let runs: Vec<Run> = rounds.into_iter().map(in_the_middle).inspect(Run::report).collect();
+    let runs: Vec<Run> = rounds.into_iter().map(median_run).inspect(Run::report).collect();
     print_row([
         "triangles",
-        "vertices in",
-        "out",
+        "inserted",
+        "removed",
         "flips",
         "undo ms",
         "redo ms",
         "undo MB",
-        "bytes a vertex",
-        "bare change",
+        "undo bytes/vertex",
+        "bare volume change",
     ]);
     for run in &runs {
         run.report_stroke();
     }
-    print_row(["triangles", "cost of a touched vertex over that at a million, by the clock", "by the processor"]);
+    println!("\ncost per touched vertex, relative to the mesh of a million triangles");
+    print_row(["triangles", "wall time", "CPU time"]);
     for run in &runs {
-        let over_judged = |seconds: fn(&Run) -> f64| {
-            let of_vertex = |run: &Run| seconds(run) / run.touched();
-            format!("{:.2}", of_vertex(run) / of_vertex(&runs[JUDGED]))
+        let relative_cost = |seconds: fn(&Run) -> f64| {
+            let cost_per_vertex = |run: &Run| seconds(run) / run.touched();
+            format!("{:.2}", cost_per_vertex(run) / cost_per_vertex(&runs[REFERENCE]))
         };
-        print_row([&run.triangles.to_string(), &over_judged(Run::median_seconds), &over_judged(|run| run.cpu_seconds)]);
+        print_row([
+            &run.triangles.to_string(),
+            &relative_cost(Run::median_seconds),
+            &relative_cost(|run| run.cpu_seconds),
+        ]);
     }
 }
 
-/// The run with the median of the medians.
-fn in_the_middle(mut runs: Vec<Run>) -> Run {
+/// The run whose median time per move is the median of all runs.
+fn median_run(mut runs: Vec<Run>) -> Run {
     runs.sort_by(|one, other| one.median_seconds().total_cmp(&other.median_seconds()));
     runs.swap_remove(runs.len() / 2)
 }
 
-/// The reach of a brush that covers this share of the unit sphere, above which its middle stands by `HEIGHT` of its reach.
-fn reach_of(share: f64) -> f64 {
+/// Reach of a brush that covers a `fraction` of the unit sphere if its center is `HEIGHT` times its
+/// reach above the surface.
+fn reach_of(fraction: f64) -> f64 {
     let covered = |reach: f64| {
-        let middle = 1.0 + HEIGHT * reach;
-        // The law of cosines for the middles of sphere and brush and a point where both surfaces meet.
-        let cosine = (1.0 + middle * middle - reach * reach) / (2.0 * middle);
+        let center = 1.0 + HEIGHT * reach;
+        // Law of cosines for the two centers and a point on both surfaces.
+        let cosine = (1.0 + center * center - reach * reach) / (2.0 * center);
         0.5 * (1.0 - cosine)
     };
     let (mut low, mut high) = (0.0, 1.0);
     while high - low > 1e-9 {
-        let between = 0.5 * (low + high);
-        *(if covered(between) < share { &mut low } else { &mut high }) = between;
+        let middle = 0.5 * (low + high);
+        *(if covered(middle) < fraction { &mut low } else { &mut high }) = middle;
     }
     high
 }
@@ -100,9 +112,9 @@ fn reach_of(share: f64) -> f64 {
 struct Run {
     triangles: usize,
     opened_volume: f64,
-    /// Of each move: by the clock, with taking what has changed, and what it tells of itself.
+    /// Wall time of each move in seconds, including the query of its changes, with its receipt.
     moves: Vec<(f64, MoveReceipt)>,
-    /// Of the processor, a move on average.
+    /// Mean CPU time per move, seconds.
     cpu_seconds: f64,
     receipt: StrokeReceipt,
     undo_seconds: f64,
@@ -113,27 +125,27 @@ impl Run {
     fn of(segments: usize) -> Self {
         let mesh = sphere(segments);
         let (triangles, opened_volume) = (mesh.triangles.len(), mesh.volume());
-        let million = (12 * SEGMENTS[JUDGED] * SEGMENTS[JUDGED]) as f64;
+        let million = (12 * SEGMENTS[REFERENCE] * SEGMENTS[REFERENCE]) as f64;
         let reach = reach_of(REACHED * million / triangles as f64);
         let longest = 1.5 * longest_edge(&mesh);
         let mut session = Session::open(mesh, SessionOptions::default()).expect("a sphere");
         let shape = ToolShape::Sphere(Sphere { radius: 0.5 * reach });
         let tool = Tool { shape, support: 0.5 * reach, profile: Profile::Quintic, free_form: 0.0 };
-        let tool = Arc::new(SessionTool::new("brush", tool, &Meshes::new(), &NoProgress).expect("a ball"));
+        let tool = Arc::new(SessionTool::new("brush", tool, &Meshes::new(), &NoProgress).expect("a valid tool"));
         let refine = InteractiveRefinement { longest: Some(longest), ..InteractiveRefinement::default() };
-        session.begin_stroke(&tool, StrokeOptions { refine: Some(refine) }).expect("no stroke before");
+        session.begin_stroke(&tool, StrokeOptions { refine: Some(refine) }).expect("no open stroke");
         let cpu = cpu_seconds();
         let mut moves = Vec::new();
         for (index, pose) in recorded(reach).iter().enumerate() {
             let begin = Instant::now();
-            let receipt = session.move_to(pose, index as f64 / 60.0).expect("a short way");
+            let receipt = session.move_to(pose, index as f64 / 60.0).expect("a valid move");
             std::hint::black_box(session.take_changes());
             if index > 0 {
                 moves.push((begin.elapsed().as_secs_f64(), receipt));
             }
         }
         let cpu_seconds = (cpu_seconds() - cpu) / MOVES as f64;
-        let receipt = session.end_stroke().expect("a stroke");
+        let receipt = session.end_stroke().expect("an open stroke");
         let mut timed = |step: fn(&mut Session) -> bool| {
             let begin = Instant::now();
             assert!(step(&mut session));
@@ -142,8 +154,8 @@ impl Run {
         let mut undo = Vec::new();
         let mut redo = Vec::new();
         for _ in 0..9 {
-            undo.push(timed(|session| session.undo().expect("no stroke")));
-            redo.push(timed(|session| session.redo().expect("no stroke")));
+            undo.push(timed(|session| session.undo().expect("no open stroke")));
+            redo.push(timed(|session| session.redo().expect("no open stroke")));
         }
         Self {
             triangles,
@@ -160,15 +172,15 @@ impl Run {
         self.percentile(0.5, |(seconds, _)| *seconds)
     }
 
-    /// Vertices moved by the move in the middle.
+    /// Median number of vertices that a move touches.
     fn touched(&self) -> f64 {
         self.percentile(0.5, |(_, receipt)| receipt.moved_vertices as f64)
     }
 
-    fn percentile(&self, share: f64, figure: impl Fn(&(f64, MoveReceipt)) -> f64) -> f64 {
+    fn percentile(&self, fraction: f64, figure: impl Fn(&(f64, MoveReceipt)) -> f64) -> f64 {
         let mut figures: Vec<f64> = self.moves.iter().map(figure).collect();
         figures.sort_unstable_by(f64::total_cmp);
-        figures[(share * (figures.len() - 1) as f64) as usize]
+        figures[(fraction * (figures.len() - 1) as f64) as usize]
     }
 
     fn report(&self) {
@@ -205,7 +217,8 @@ impl Run {
     }
 }
 
-/// A cube blown up, its cells at equal angles seen from the middle of a face, so that they are of much the same size.
+/// A cube projected to a sphere. The cells have equal angles as seen from the center, so their
+/// sizes are similar.
 fn sphere(segments: usize) -> TriMesh {
     let mut mesh = primitives::box_mesh(DVec3::ONE, [segments; 3]);
     for position in &mut mesh.positions {
@@ -223,8 +236,8 @@ fn longest_edge(mesh: &TriMesh) -> f64 {
     lengths.fold(0.0, f64::max)
 }
 
-/// A hand that rubs as a host at 60 frames a second records it: to and fro across its way and slowly along it, now quicker, now
-/// slower, in and out, and turning. It goes by up to four time steps a move.
+/// Poses of a rubbing motion, recorded at 60 Hz. The brush oscillates across its path while it
+/// advances slowly. Its speed and height vary, and it rotates. A move takes up to four time steps.
 fn recorded(reach: f64) -> Vec<Pose> {
     let pose = |index: usize| {
         let phase = index as f64 * 0.1;

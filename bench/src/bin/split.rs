@@ -1,16 +1,16 @@
-//! Splitting to a longest edge, on one core, against manifold3d at equal numbers of triangles: of a made-up scan, or of the mesh
-//! files that are named as arguments.
+//! Splitting edges to a maximum length on one core, compared with manifold3d at equal numbers of
+//! triangles. The input is a synthetic scan, or the mesh files given as arguments.
 
-#![expect(clippy::print_stderr, reason = "says why a peer is missing")]
+#![expect(clippy::print_stderr, reason = "reports why a peer is missing")]
 
-use isochore_bench::{Comparison, PythonPeer, cpu_seconds, give_mesh, median, on_one_core, scan};
+use isochore_bench::{Comparison, PythonPeer, cpu_seconds, grouped, load_mesh, median, on_one_core, scan};
 use isochore_mesh::{NoProgress, Subdivision, TriMesh, io};
 use serde_json::json;
 
-/// Rounds after one that warms up.
+/// Rounds after one warm-up round.
 const ROUNDS: usize = 7;
 
-/// Lengths asked of the peer, in mean edges.
+/// Maximum edge lengths requested from the peer, relative to the mean edge.
 const LENGTHS: [f64; 3] = [0.7, 0.4, 0.2];
 
 fn main() {
@@ -18,7 +18,7 @@ fn main() {
         Comparison::print_heading();
         let files: Vec<String> = std::env::args().skip(1).collect();
         for file in &files {
-            compare(&io::read(file).expect("a mesh that can be read"), file);
+            compare(&io::read(file).expect("a readable mesh"), file);
         }
         if files.is_empty() {
             compare(&scan(6), "a scan");
@@ -31,23 +31,23 @@ fn compare(mesh: &TriMesh, name: &str) {
         Ok(peer) => peer,
         Err(error) => return eprintln!("manifold3d is missing: {error}"),
     };
-    give_mesh(&mut peer, mesh).expect("the peer takes a mesh");
+    load_mesh(&mut peer, mesh).expect("the peer accepts the mesh");
     let mean = mesh.edge_lengths().expect("edges").mean;
-    for share in LENGTHS {
-        let question = json!({ "job": "manifold_split", "length": share * mean });
-        let answer = match peer.ask(&question) {
-            Ok(answer) => answer,
+    for length in LENGTHS {
+        let request = json!({ "job": "manifold_split", "length": length * mean });
+        let reply = match peer.ask(&request) {
+            Ok(reply) => reply,
             Err(error) => return eprintln!("manifold3d is missing: {error}"),
         };
-        let number = |key: &str| answer[key].as_f64().expect("a number");
+        let number = |key: &str| reply[key].as_f64().expect("a number");
         let count = number("triangles");
-        let longest = length_for(mesh, share * mean, count);
+        let longest = length_for(mesh, length * mean, count);
         let (mut ours, mut theirs) = (Vec::new(), Vec::new());
         for round in 0..=ROUNDS {
             let begin = cpu_seconds();
             drop(std::hint::black_box(split(mesh, longest)));
             let seconds = cpu_seconds() - begin;
-            let peer_seconds = peer.seconds(&question).expect("it has answered before");
+            let peer_seconds = peer.seconds(&request).expect("the peer replied before");
             if round > 0 {
                 ours.push(seconds);
                 theirs.push(peer_seconds);
@@ -55,9 +55,13 @@ fn compare(mesh: &TriMesh, name: &str) {
         }
         let fine = mesh.subdivided(&split(mesh, longest));
         Comparison {
-            job: format!("{name} of {} triangles split into {count}", mesh.triangles.len()),
+            job: format!(
+                "split {name} of {} triangles into {}",
+                grouped(mesh.triangles.len()),
+                grouped(count as usize)
+            ),
             peer: "manifold3d 3.5.4 refine_to_length".into(),
-            unit: "ns a triangle made".into(),
+            unit: "ns/output triangle".into(),
             ours: 1e9 * median(&mut ours) / fine.triangles.len() as f64,
             theirs: 1e9 * median(&mut theirs) / count,
             accuracy: format!(
@@ -73,7 +77,7 @@ fn compare(mesh: &TriMesh, name: &str) {
     }
 }
 
-/// The length that splits `mesh` into about `count` triangles, by bisection.
+/// Maximum edge length that splits `mesh` into about `count` triangles, by bisection.
 fn length_for(mesh: &TriMesh, guess: f64, count: f64) -> f64 {
     let (mut low, mut high) = (0.25 * guess, 8.0 * guess);
     for _ in 0..10 {
@@ -84,5 +88,5 @@ fn length_for(mesh: &TriMesh, guess: f64, count: f64) -> f64 {
 }
 
 fn split(mesh: &TriMesh, longest: f64) -> Subdivision {
-    mesh.split_to_length(longest, usize::MAX, &NoProgress).expect("a sound mesh")
+    mesh.split_to_length(longest, usize::MAX, &NoProgress).expect("a valid mesh")
 }

@@ -1,4 +1,5 @@
-//! How long the command takes to begin: a small mesh inspected, beside a program that does nothing; and how large it is.
+//! Startup time and size of the command: inspecting a small mesh, compared with a program that does
+//! nothing.
 
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
@@ -8,13 +9,14 @@ use std::process::{Command, Stdio};
 use isochore_bench::{Comparison, interleaved_medians, on_one_core, scratch};
 use isochore_mesh::{io, primitives};
 
-/// Runs a round: one alone is too short to be timed.
+/// Runs per round. A single run is too short to measure.
 const RUNS: usize = 20;
 
 fn main() {
-    let command = std::env::current_exe().expect("the system knows it").with_file_name("isochore");
-    let size = command.metadata().expect("cargo build --release puts the command beside this program").len();
-    println!("the command has {:.1} MB", 1e-6 * size as f64);
+    let command = std::env::current_exe().expect("this program has a path").with_file_name("isochore");
+    let size =
+        command.metadata().expect("cargo build --release builds the command into the folder of this program").len();
+    println!("size of the command: {:.1} MB", 1e-6 * size as f64);
     on_one_core(|| compare(&command));
 }
 
@@ -37,8 +39,8 @@ fn compare(command: &Path) {
     let [ours, theirs] = interleaved_medians(&mut [&mut { inspect }, &mut { nothing }])[..] else { return };
     Comparison::print_heading();
     Comparison {
-        job: format!("`isochore inspect` of {} triangles, from start to end", mesh.triangles.len()),
-        peer: "`true`, which does nothing".into(),
+        job: format!("`isochore inspect` of {} triangles, whole process", mesh.triangles.len()),
+        peer: "`true` (does nothing)".into(),
         unit: "ms".into(),
         ours: 1e3 * ours / RUNS as f64,
         theirs: 1e3 * theirs / RUNS as f64,

@@ -1,6 +1,8 @@
-//! One frame of advection, one Runge-Kutta step of an analytic tool that touches the whole object, beside the frame rates that the
-//! thesis prints for objects of as many triangles (D. Zheng, 2008, table 13.1, on a 2.66 GHz Xeon; its frames also draw, so the
-//! ratio is context, not a race).
+//! Frame rate of advection: one Runge-Kutta step of an analytic tool that touches the whole object.
+//!
+//! Compared with the frame rates of the thesis for objects with the same number of triangles (D.
+//! Zheng, 2008, table 13.1, on a 2.66 GHz Xeon). Those frames include rendering, so the ratio is
+//! only context.
 
 use std::sync::Arc;
 
@@ -16,7 +18,7 @@ pub(crate) fn run() {
         let step = one_step();
         let mut frame = || {
             std::hint::black_box(advect_points(&object.positions, std::slice::from_ref(&step), &NoProgress))
-                .expect("nothing cancels");
+                .expect("the advection is not canceled");
         };
         let seconds = interleaved_medians(&mut [&mut frame])[0];
         print_row([
@@ -30,12 +32,13 @@ pub(crate) fn run() {
     println!();
 }
 
-/// A ball inside the unit sphere whose support reaches beyond all of it, moved by less than one step.
+/// Moves a ball inside the unit sphere by less than one step. Its support contains the whole
+/// sphere.
 fn one_step() -> Stroke {
-    let ball = Sphere::new(0.5).expect("a radius");
-    let tool = Arc::new(Tool::new(Arc::new(ball), 1.0, Profile::Quintic).expect("a support"));
+    let ball = Sphere::new(0.5).expect("a positive radius");
+    let tool = Arc::new(Tool::new(Arc::new(ball), 1.0, Profile::Quintic).expect("a positive support"));
     let keys = vec![Pose::IDENTITY, Pose::at(DVec3::Z * 0.05)];
-    let way = Move::new(tool, keys, 0.125).expect("a way");
-    assert_eq!(way.steps(), 1, "a frame is one step");
-    Stroke::Move(way)
+    let path = Move::new(tool, keys, 0.125).expect("a valid path");
+    assert_eq!(path.steps(), 1, "a frame is one step");
+    Stroke::Move(path)
 }

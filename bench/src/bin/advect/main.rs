@@ -1,4 +1,4 @@
-//! Advection: points carried through Runge-Kutta steps by rigid tools, on one core.
+//! Advection of points by rigid tools with Runge-Kutta steps, on one core.
 
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 

@@ -1,6 +1,8 @@
-//! Building a distance grid, against asking general libraries for one node after the other. Seconds are those that threads
-//! worked; one core, unless a table says otherwise. An argument names a mesh to measure instead of the generated one of 70,000
-//! triangles; the argument `threads` asks for the table of two threads alone, which wants a machine that does nothing else.
+//! Construction of a distance grid, compared with node-by-node queries of general libraries.
+//!
+//! Times are CPU times on one core unless a table says otherwise. Arguments: a mesh file, which
+//! replaces the generated mesh of 70,000 triangles, and `threads`, which selects only the table of
+//! two threads. That table needs an idle machine.
 
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
@@ -16,17 +18,18 @@ use isochore_mesh::{DistanceField, DistanceFieldOptions, NoProgress, TriMesh, io
 use peers::{Round, Task};
 use stages::{Stages, build};
 
-/// Rounds of each measurement, after one that warms up.
+/// Rounds of each measurement, after one warm-up round.
 const ROUNDS: usize = 7;
 
-/// Nodes that other libraries are asked for in a round, or it would take minutes: in whole layers, because neighbors find what they
-/// need in the cache.
-const NODES_ASKED: usize = 30_000;
+/// Approximate number of nodes that a peer computes per round. All nodes would take minutes. Whole
+/// layers are used, so that neighbors benefit from the cache.
+const NODES_QUERIED: usize = 30_000;
 
-/// Closer to the surface than this, over the size of the mesh, a sign is a matter of rounding.
+/// Signs are not compared at distances below this, relative to the size of the mesh. Larger: wrong
+/// signs are missed. Smaller: rounding counts as a wrong sign.
 const ON_SURFACE: f64 = 1e-6;
 
-/// A shape with hollows and ridges, which fills little of its bounding box.
+/// A shape with hollows and ridges that fills a small part of its bounding box.
 fn rugged(around: usize, upward: usize) -> TriMesh {
     let mut mesh = latitude_longitude_sphere(1.0, around, upward);
     for p in &mut mesh.positions {
@@ -41,43 +44,43 @@ fn main() {
     let with_peers = !arguments.iter().any(|argument| argument == "threads");
     arguments.retain(|argument| argument != "threads");
     let mesh = match arguments.first() {
-        Some(path) => io::read(path).expect("a mesh"),
+        Some(path) => io::read(path).expect("a readable mesh"),
         None => rugged(220, 160),
     };
     let fine = rugged(880, 640);
     if with_peers {
-        on_one_core(|| beside_peers(&mesh, &fine));
+        on_one_core(|| measure_on_one_core(&mesh, &fine));
     }
-    println!("\nseconds by the clock");
+    println!("\nwall time on two threads");
     Comparison::print_heading();
     two_threads(&mesh, 128);
     two_threads(&fine, 64);
 }
 
-/// Everything that one core does.
-fn beside_peers(mesh: &TriMesh, fine: &TriMesh) {
-    println!("differences from double precision, over the size of the mesh");
+/// All measurements on one core.
+fn measure_on_one_core(mesh: &TriMesh, fine: &TriMesh) {
+    println!("errors are relative to the size of the mesh; the reference is in double precision");
     compare(mesh, 64);
     compare(mesh, 128);
     compare(fine, 64);
 
-    println!("\nonly a band around the surface, milliseconds");
+    println!("\nbands around the surface, milliseconds");
     print_row(["triangles", "cells", "band", "hierarchy", "distance", "signs", "spline"]);
     for band in [f64::INFINITY, 8.0, 3.0] {
-        alone(mesh, band);
+        measure_stages(mesh, band);
     }
-    println!("\n1,000 holes, milliseconds");
+    println!("\nmesh with 1,000 holes, milliseconds");
     print_row(["triangles", "cells", "band", "hierarchy", "distance", "signs", "spline"]);
-    alone(&with_holes(mesh.clone(), 1000), f64::INFINITY);
+    measure_stages(&with_holes(mesh.clone(), 1000), f64::INFINITY);
 }
 
-/// All peers and the distance field in turn.
+/// Compares the distance field with all peers, alternately.
 fn compare(mesh: &TriMesh, resolution: usize) {
     let options = DistanceFieldOptions { resolution, ..Default::default() };
-    let (field, peak) = peak_bytes(|| DistanceField::new(mesh, &options, &NoProgress).expect("a sound mesh"));
+    let (field, peak) = peak_bytes(|| DistanceField::new(mesh, &options, &NoProgress).expect("a valid mesh"));
     let count = field.grid().len();
     let [nx, ny, nz] = field.grid().dims;
-    let layer_step = (count / NODES_ASKED).max(1);
+    let layer_step = (count / NODES_QUERIED).max(1);
     let layers = nz / layer_step;
     let first_layer = (nz - (layers - 1) * layer_step) / 2;
     let task = Task { mesh, grid: field.grid(), first_layer, layer_step, layers };
@@ -86,7 +89,7 @@ fn compare(mesh: &TriMesh, resolution: usize) {
     peers.retain_mut(|peer| match peer.prepare(&task) {
         Ok(()) => true,
         Err(reason) => {
-            println!("without {}: {reason}", peer.name());
+            println!("{} is missing: {reason}", peer.name());
             false
         }
     });
@@ -122,27 +125,28 @@ fn compare(mesh: &TriMesh, resolution: usize) {
         &nanoseconds(of_ours(|stages| stages.distance)),
         &nanoseconds(of_ours(|stages| stages.signs)),
         &nanoseconds(of_ours(|stages| stages.spline)),
-        &peak.map_or("?".into(), |bytes| format!("{:.0}", 1e-6 * bytes as f64)),
+        &peak.map_or("n/a".into(), |bytes| format!("{:.0}", 1e-6 * bytes as f64)),
     ]);
     let thousands = mesh.triangles.len() / 1000;
     let job = format!("signed distance grid, {thousands}k triangles, {resolution} cells");
     let own: Vec<f64> = task.nodes().map(|node| f64::from(field.samples()[node])).collect();
     let exact = theirs[0][0].distances.clone();
     let size = mesh.bounds().size().max_element();
-    let judge = |distances: &[f64]| {
+    let errors_of = |distances: &[f64]| {
         let pairs = || distances.iter().zip(&exact);
         let error = pairs().map(|(d, exact)| (d.abs() - exact.abs()).abs()).fold(0.0, f64::max) / size;
-        let turned = pairs().filter(|&(d, exact)| d * exact < 0.0 && exact.abs() > ON_SURFACE * size).count();
-        (format!("{error:.0e}"), turned.to_string())
+        let wrong_signs = pairs().filter(|&(d, exact)| d * exact < 0.0 && exact.abs() > ON_SURFACE * size).count();
+        (format!("{error:.0e}"), wrong_signs.to_string())
     };
     Comparison::print_heading();
     let mut rows = Vec::new();
     for (peer, rounds) in peers.iter().zip(&theirs) {
         let of_theirs = |part: fn(&Round) -> f64| median(&mut rounds[1..].iter().map(part).collect::<Vec<_>>());
         let (build, query) = (of_theirs(|round| round.build), of_theirs(|round| round.query));
-        let ((error, turned), (their_error, their_turned)) = (judge(&own), judge(&rounds[0].distances));
-        let their_turned = if peer.has_signs() { their_turned } else { "untold".into() };
-        let accuracy = format!("error {error} / {their_error}, wrong signs {turned} / {their_turned}");
+        let ((error, wrong_signs), (their_error, their_wrong_signs)) =
+            (errors_of(&own), errors_of(&rounds[0].distances));
+        let their_wrong_signs = if peer.has_signs() { their_wrong_signs } else { "n/a".into() };
+        let accuracy = format!("error {error} / {their_error}, wrong signs {wrong_signs} / {their_wrong_signs}");
         let row = |job: &str, unit: &str, ours: f64, theirs: f64| Comparison {
             job: job.into(),
             peer: peer.name().into(),
@@ -153,13 +157,13 @@ fn compare(mesh: &TriMesh, resolution: usize) {
         };
         row(&job, "ns/node", 1e9 * node, 1e9 * query).report();
         let whole = |build: f64, node: f64| 1e3 * (build + node * count as f64);
-        rows.push(row(&format!("{job}, with preparation"), "ms", whole(hierarchy, node), whole(build, query)));
+        rows.push(row(&format!("{job}, including preparation"), "ms", whole(hierarchy, node), whole(build, query)));
     }
     rows.iter().for_each(Comparison::report);
 }
 
-/// Stages of one field at 128 cells, with a band of so many cells.
-fn alone(mesh: &TriMesh, band_cells: f64) {
+/// Measures the stages of one field with 128 cells and a band of `band_cells` cells.
+fn measure_stages(mesh: &TriMesh, band_cells: f64) {
     let resolution = 128;
     let cell = mesh.bounds().size().max_element() / resolution as f64;
     let options = DistanceFieldOptions { resolution, band: band_cells * cell, ..Default::default() };
@@ -197,18 +201,18 @@ fn two_threads(mesh: &TriMesh, resolution: usize) {
     for _ in 0..=ROUNDS {
         for (pool, seconds) in pools.iter().zip(&mut seconds) {
             let begin = Instant::now();
-            pool.install(|| drop(DistanceField::new(mesh, &options, &NoProgress).expect("a sound mesh")));
+            pool.install(|| drop(DistanceField::new(mesh, &options, &NoProgress).expect("a valid mesh")));
             seconds.push(begin.elapsed().as_secs_f64());
         }
     }
-    // Whatever else runs on the machine can only add to the time.
+    // Other load on the machine can only increase the time, so take the minimum.
     let [one, two] = seconds.map(|seconds| seconds.into_iter().fold(f64::INFINITY, f64::min));
     let row = Comparison {
         job: format!(
-            "the same on two cores, {}k triangles, {resolution} cells, by the clock",
+            "signed distance grid on two threads, {}k triangles, {resolution} cells, wall time",
             mesh.triangles.len() / 1000
         ),
-        peer: "isochore on one core".into(),
+        peer: "isochore on one thread".into(),
         unit: "ms".into(),
         ours: 1e3 * two,
         theirs: 1e3 * one,

@@ -3,7 +3,7 @@ use std::sync::Mutex;
 use isochore_bench::cpu_seconds;
 use isochore_mesh::{DistanceField, DistanceFieldOptions, Monitor, TriMesh};
 
-/// Seconds of work in each stage of building a distance field.
+/// CPU times of the stages of building a distance field, in seconds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Stages {
     pub(crate) hierarchy: f64,
@@ -12,23 +12,23 @@ pub(crate) struct Stages {
     pub(crate) spline: f64,
 }
 
-/// Notes when each stage begins.
+/// Records the CPU time at which each stage begins.
 struct Clock(Mutex<Vec<(&'static str, f64)>>);
 
 impl Monitor for Clock {
     fn update(&self, stage: &'static str, _done: f64) {
-        let mut begins = self.0.lock().expect("no thread panics");
+        let mut begins = self.0.lock().expect("no thread panicked");
         if begins.last().is_none_or(|(last, _)| *last != stage) {
             begins.push((stage, cpu_seconds()));
         }
     }
 }
 
-/// Builds the field, and says how long each stage worked.
+/// Builds a distance field and returns it with the CPU time of each stage.
 pub(crate) fn build(mesh: &TriMesh, options: &DistanceFieldOptions) -> (DistanceField, Stages) {
     let clock = Clock(Mutex::default());
-    let field = DistanceField::new(mesh, options, &clock).expect("a sound mesh");
-    let mut begins = clock.0.into_inner().expect("no thread panics");
+    let field = DistanceField::new(mesh, options, &clock).expect("a valid mesh");
+    let mut begins = clock.0.into_inner().expect("no thread panicked");
     begins.push(("end", cpu_seconds()));
     let mut stages = Stages::default();
     for pair in begins.windows(2) {

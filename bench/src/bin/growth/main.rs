@@ -1,8 +1,8 @@
-//! How the cost of each stage grows: over the number of triangles, over the nodes of a distance grid and over the number of
-//! strokes, on one core. Prints the slopes on logarithmic scales and draws `target/growth/*.svg`.
+//! Scaling of each stage with the number of triangles, grid nodes and strokes, on one core. Prints
+//! the slopes on logarithmic scales and plots `target/growth/*.svg`.
 //!
-//! Ends each series before a run that would take longer than two seconds; `growth full` goes on to 10⁷ triangles and 20 seconds.
-//! `growth memory` prints what stages hold at their peak instead.
+//! A series ends before a run that would take longer than two seconds. `growth full` continues to
+//! 10⁷ triangles and 20 seconds. `growth memory` prints the peak memory of stages instead.
 
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
@@ -19,11 +19,12 @@ use isochore_mesh::{DistanceField, DistanceFieldOptions, NoProgress};
 
 use crate::{plot::Plot, series::Series};
 
-/// How far to go.
+/// Limits of the series.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
-    /// Runs that would take longer are left out.
+    /// Longest expected run, seconds.
     seconds: f64,
+    /// Largest number of triangles.
     triangles: usize,
 }
 
@@ -34,7 +35,7 @@ const FULL: Extent = Extent { seconds: 20.0, triangles: 11_000_000 };
 /// Cells on the longest side of distance grids.
 const RESOLUTIONS: [usize; 4] = [32, 64, 128, 256];
 
-/// Of the scan that is sampled and that strokes deform: 98,000 triangles.
+/// Segments of the scan that is sampled and deformed: 98,000 triangles.
 const SEGMENTS: usize = 91;
 
 fn main() {
@@ -49,18 +50,18 @@ fn main() {
     let extent = if arguments.iter().any(|argument| argument == "full") { FULL } else { SHORT };
     on_one_core(|| {
         let [mesh, deformation] = over_triangles::measure(extent);
-        report("triangles", "triangles.svg", "Meshes: time of work over the number of triangles", &mesh);
-        report("triangles", "deformation.svg", "Deformation: time of work over the number of triangles", &deformation);
+        report("triangles", "triangles.svg", "Meshes: CPU time by number of triangles", &mesh);
+        report("triangles", "deformation.svg", "Deformation: CPU time by number of triangles", &deformation);
         let grids = over_nodes(extent);
-        report("nodes of the grid", "grid.svg", "Distance grids: time of work over the number of nodes", &grids);
+        report("grid nodes", "grid.svg", "Distance grids: CPU time by number of nodes", &grids);
         let [strokes, touched] = over_strokes::measure(extent);
-        report("strokes", "strokes.svg", "Strokes: time of work over their number", &strokes);
-        let title = "Strokes: time of work over the vertices that they move, summed up";
-        report("vertices moved", "touched.svg", title, &touched);
+        report("strokes", "strokes.svg", "Strokes: CPU time by number of strokes", &strokes);
+        let title = "Strokes: CPU time by total number of moved vertices";
+        report("moved vertices", "touched.svg", title, &touched);
     });
 }
 
-/// Distance grids of one mesh.
+/// Distance grids of one mesh at increasing resolutions.
 fn over_nodes(extent: Extent) -> Vec<Series> {
     let mesh = isochore_bench::scan_of_cube(SEGMENTS);
     let mut all = Series::new("distance grid");
@@ -68,7 +69,7 @@ fn over_nodes(extent: Extent) -> Vec<Series> {
     for resolution in RESOLUTIONS {
         let options = DistanceFieldOptions { resolution, ..DistanceFieldOptions::default() };
         let narrow = DistanceFieldOptions { band: 4.0 * longest_side(&mesh) / resolution as f64, ..options };
-        let sample = |options| DistanceField::new(&mesh, &options, &NoProgress).expect("a sound mesh");
+        let sample = |options| DistanceField::new(&mesh, &options, &NoProgress).expect("a valid mesh");
         let nodes = sample(narrow).samples().len();
         all.measure(nodes, extent.seconds, || sample(options));
         band.measure(nodes, extent.seconds, || sample(narrow));
@@ -80,10 +81,10 @@ fn longest_side(mesh: &isochore_mesh::TriMesh) -> f64 {
     mesh.bounds().size().max_element()
 }
 
-/// Prints the slopes and draws the plot.
+/// Prints the slopes and writes the plot.
 fn report(size: &str, file: &str, title: &str, series: &[Series]) {
     println!("\n{title}");
-    print_row(["slope", "last slope", &format!("largest {size}"), "seconds there", "stage"]);
+    print_row(["slope", "last slope", &format!("max {size}"), "seconds at max", "stage"]);
     for series in series {
         let Some(&(largest, seconds)) = series.points.last() else { continue };
         print_row([

@@ -9,14 +9,14 @@ use crate::{
     series::Series,
 };
 
-/// Reach of each stroke: 64 of them cover the surface about twice over.
+/// Reach of each stroke. 64 strokes cover the surface about twice.
 const REACH: f64 = 0.35;
 
-/// Deformations of one mesh by growing numbers of strokes, spread over it evenly: over the number of strokes, and over the
-/// numbers of vertices that each of them moves, summed up.
+/// Deforms one mesh by increasing numbers of evenly distributed strokes. Returns the series by
+/// number of strokes and by total number of moved vertices.
 pub(crate) fn measure(extent: Extent) -> [Vec<Series>; 2] {
     let mesh = scan_of_cube(SEGMENTS);
-    let mut over_number = ["deform, no refinement", "deform, refinement", "flow of points"].map(Series::new);
+    let mut over_number = ["deform, no refinement", "deform, refinement", "advection of points"].map(Series::new);
     let mut over_moved = over_number.clone();
     for count in [1, 2, 4, 8, 16, 32, 64] {
         let strokes: Vec<Stroke> = (0..count)
@@ -29,17 +29,17 @@ pub(crate) fn measure(extent: Extent) -> [Vec<Series>; 2] {
                 press(*nearest.expect("a vertex"), REACH)
             })
             .collect();
-        let [plain, refined, flow] = &mut over_number;
-        let deformed = |options| deform(&mesh, &strokes, options, &NoProgress).expect("a sound mesh");
+        let [plain, refined, advection] = &mut over_number;
+        let deformed = |options| deform(&mesh, &strokes, options, &NoProgress).expect("a valid mesh");
         let refinement = refinement();
         plain.measure(count, extent.seconds, || deformed(&PLAIN));
         refined.measure(count, extent.seconds, || deformed(&refinement));
-        flow.measure(count, extent.seconds, || {
-            advect_points(&mesh.positions, &strokes, &NoProgress).expect("no stamp")
+        advection.measure(count, extent.seconds, || {
+            advect_points(&mesh.positions, &strokes, &NoProgress).expect("strokes without stamps")
         });
-        for (options, moving) in [(&PLAIN, vec![0, 2]), (&refinement, vec![1])] {
+        for (options, indices) in [(&PLAIN, vec![0, 2]), (&refinement, vec![1])] {
             let moved = deformed(options).receipt.strokes.iter().map(|stroke| stroke.moved).sum();
-            for index in moving {
+            for index in indices {
                 over_moved[index].repeat_last(moved, &over_number[index], count);
             }
         }
@@ -47,7 +47,7 @@ pub(crate) fn measure(extent: Extent) -> [Vec<Series>; 2] {
     [over_number.into(), over_moved.into()]
 }
 
-/// Directions about equally far from each other: steps of the golden angle on equal slices of the sphere.
+/// Evenly distributed directions: steps of the golden angle on slices of the sphere of equal area.
 fn spread(index: usize, count: usize) -> DVec3 {
     let height = 1.0 - (2.0 * index as f64 + 1.0) / count as f64;
     let angle = std::f64::consts::PI * (3.0 - 5_f64.sqrt()) * index as f64;

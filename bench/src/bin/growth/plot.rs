@@ -7,13 +7,14 @@ use crate::series::Series;
 /// Width and height in pixels.
 const SIZE: (u32, u32) = (1120, 620);
 
-/// Of the strip at the right, in pixels.
+/// Width of the legend at the right, in pixels.
 const LEGEND_WIDTH: u32 = 390;
 
 /// Height of a row of the legend, in pixels.
 const LEGEND_ROW: i32 = 28;
 
-/// Told apart by people with any kind of color vision too: the palette of Okabe and Ito, without yellow, which white drowns.
+/// Palette of Okabe and Ito, which is also distinct for color-blind readers. Yellow is omitted,
+/// because it is hard to see on white.
 const COLORS: [RGBColor; 7] = [
     RGBColor(0, 0, 0),
     RGBColor(230, 159, 0),
@@ -24,11 +25,11 @@ const COLORS: [RGBColor; 7] = [
     RGBColor(204, 121, 167),
 ];
 
-/// Seconds over sizes on logarithmic scales.
+/// CPU time by size, on logarithmic scales.
 #[derive(Debug)]
 pub(crate) struct Plot<'a> {
     pub(crate) title: &'a str,
-    /// What the sizes count.
+    /// Unit of the sizes.
     pub(crate) size: &'a str,
     pub(crate) series: &'a [Series],
 }
@@ -51,12 +52,12 @@ impl Plot<'_> {
         chart
             .configure_mesh()
             .x_desc(self.size)
-            .y_desc("seconds of work on one core")
+            .y_desc("CPU seconds on one core")
             .x_label_formatter(&tick)
             .y_label_formatter(&tick)
             .label_style(("sans-serif", 14))
             .draw()?;
-        right.draw(&Text::new("In brackets the slope; 1 is proportional.", (0, 20), ("sans-serif", 14)))?;
+        right.draw(&Text::new("Slope in parentheses; 1 means linear.", (0, 20), ("sans-serif", 14)))?;
         for (index, series) in self.series.iter().enumerate() {
             let points = series.points.iter().map(|&(size, seconds)| (size as f64, seconds));
             let line = COLORS[index % COLORS.len()].stroke_width(2);
@@ -73,19 +74,19 @@ impl Plot<'_> {
     }
 }
 
-/// A dot the first time through the colors, then a ring.
+/// Marker of a series: a dot for the first use of a color, a ring for the second.
 fn marker<At>(index: usize, at: At) -> Circle<At, i32> {
     let color = COLORS[index % COLORS.len()];
     Circle::new(at, 4, if index < COLORS.len() { color.filled() } else { color.stroke_width(2) })
 }
 
-/// Whole powers of ten around the numbers.
+/// Range of whole powers of ten that contains the numbers.
 fn around(numbers: impl Iterator<Item = f64>) -> Range<f64> {
     let (low, high) = numbers.fold((f64::INFINITY, 0.0), |(low, high), number| (number.min(low), number.max(high)));
     libm::exp10(libm::log10(low).floor())..libm::exp10(libm::log10(high).ceil())
 }
 
-/// A number as it is written where it is short so, else with an exponent; its first digit alone.
+/// Label of a tick: plain digits from 1 to 1000, otherwise with an exponent.
 fn tick(number: &f64) -> String {
     if (1.0..1000.0).contains(number) { format!("{number:.0}") } else { format!("{number:.0e}") }
 }

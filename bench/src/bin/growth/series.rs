@@ -1,19 +1,19 @@
 use isochore_bench::{cpu_seconds, median};
 
-/// Runs of one size, of which the median counts; one is enough where it takes longer than [`LONG`].
+/// Largest number of runs per size; the median counts. Runs longer than [`LONG`] are not repeated.
 const ROUNDS: usize = 3;
 
-/// Seconds of a run that need no second one.
+/// Shortest run that is not repeated, seconds.
 const LONG: f64 = 1.0;
 
-/// Sizes of the last slope.
+/// Number of sizes of the last slope.
 const LAST: usize = 3;
 
-/// What one stage takes at growing sizes.
+/// CPU times of one stage at increasing sizes.
 #[derive(Debug, Clone)]
 pub(crate) struct Series {
     pub(crate) stage: &'static str,
-    /// Sizes, and seconds of work.
+    /// Sizes with CPU times in seconds.
     pub(crate) points: Vec<(usize, f64)>,
     has_ended: bool,
 }
@@ -23,7 +23,7 @@ impl Series {
         Self { stage, points: Vec::new(), has_ended: false }
     }
 
-    /// Measures `run` at one more size, unless it is likely to take longer than `limit` seconds.
+    /// Measures `run` at the next size, unless it is expected to take longer than `limit` seconds.
     pub(crate) fn measure<T>(&mut self, size: usize, limit: f64, mut run: impl FnMut() -> T) {
         let expected = self.points.last().map_or(0.0, |&(last, seconds)| seconds * size as f64 / last as f64);
         self.has_ended |= expected > limit;
@@ -40,18 +40,18 @@ impl Series {
         self.points.push((size, median(&mut seconds)));
     }
 
-    /// Takes over what `other` measured last, at `other_size`, for another measure of the size.
+    /// Copies the last measurement of `other` under a new `size`, if it was taken at `other_size`.
     pub(crate) fn repeat_last(&mut self, size: usize, other: &Self, other_size: usize) {
         let measured = other.points.last().filter(|(size, _)| *size == other_size);
         self.points.extend(measured.map(|&(_, seconds)| (size, seconds)));
     }
 
-    /// The exponent of the power of the size that fits the seconds best, by least squares of the logarithms.
+    /// Exponent of the power law that fits the times best, by least squares of the logarithms.
     pub(crate) fn slope(&self) -> f64 {
         slope(&self.points)
     }
 
-    /// The same over the largest sizes alone.
+    /// Exponent over the largest sizes only.
     pub(crate) fn last_slope(&self) -> f64 {
         slope(&self.points[self.points.len().saturating_sub(LAST)..])
     }
@@ -68,8 +68,8 @@ fn slope(points: &[(usize, f64)]) -> f64 {
 }
 
 #[test]
-fn powers_have_their_exponents() {
+fn slope_is_the_exponent_of_a_power_law() {
     let points: Vec<(usize, f64)> = [10, 30, 100, 1000].map(|size| (size, 3e-7 * (size as f64).powf(1.5))).into();
-    // Rounding alone.
+    // The bound allows only rounding.
     assert!((slope(&points) - 1.5).abs() < 1e-12, "{}", slope(&points));
 }

@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::{Peer, Round, Task};
 
-/// A library that `bench/peers/distance.py` asks.
+/// A library in `bench/peers/distance.py`.
 #[derive(Debug)]
 pub(super) struct InPython {
     library: &'static str,
@@ -13,7 +13,7 @@ pub(super) struct InPython {
 }
 
 impl InPython {
-    /// Starts the one of this name.
+    /// Starts the process of `library`.
     pub(super) fn start(library: &'static str) -> Result<Self, String> {
         Ok(Self { library, process: PythonPeer::start("distance", &[library])? })
     }
@@ -45,7 +45,7 @@ impl Peer for InPython {
         let nodes = task.nodes().map(|node| task.grid.node_at(node));
         write(&points, nodes.flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes).collect())?;
         self.process.ask(&json!({ "job": "prepare", "vertices": vertices, "triangles": triangles }))?;
-        // The hierarchy that compiled code is tried on.
+        // Peers that compile code need a hierarchy to run it once.
         self.process.ask(&json!({ "job": "build" }))?;
         let grid = json!({
             "first": task.grid.node(0, 0, task.first_layer).to_array(),

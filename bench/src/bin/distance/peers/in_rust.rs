@@ -10,13 +10,14 @@ use parry3d_f64::shape::{TriMesh as Mesh64, TriMeshFlags as Flags64};
 
 use super::{Peer, Round, Task};
 
-/// Exact, with signs from pseudonormals, which is its fastest way.
+/// parry3d in single precision: exact, with signs from pseudonormals, its fastest method.
 pub(super) struct Parry32;
 
-/// The same in double precision.
+/// parry3d in double precision.
 pub(super) struct Parry64;
 
-/// Carries the nearest triangle from cell to cell, which is not exact; signs by rays. It tells distances on a whole grid.
+/// mesh_to_sdf: propagates the nearest triangle from cell to cell, which is not exact, and casts
+/// rays for signs. It computes a whole grid.
 pub(super) struct MeshToSdf;
 
 impl Peer for Parry32 {
@@ -32,7 +33,7 @@ impl Peer for Parry32 {
         let vector = |p: DVec3| Vector32::new(p.x as f32, p.y as f32, p.z as f32);
         Ok(one_by_one(task, |mesh| {
             let points = mesh.positions.iter().map(|&p| vector(p)).collect();
-            let peer = Mesh32::with_flags(points, mesh.triangles.clone(), Flags32::ORIENTED).expect("a sound mesh");
+            let peer = Mesh32::with_flags(points, mesh.triangles.clone(), Flags32::ORIENTED).expect("a valid mesh");
             move |point| {
                 let point = vector(point);
                 let projection = peer.project_local_point(point, false);
@@ -56,7 +57,7 @@ impl Peer for Parry64 {
         let vector = |p: DVec3| Vector64::new(p.x, p.y, p.z);
         Ok(one_by_one(task, |mesh| {
             let points = mesh.positions.iter().map(|&p| vector(p)).collect();
-            let peer = Mesh64::with_flags(points, mesh.triangles.clone(), Flags64::ORIENTED).expect("a sound mesh");
+            let peer = Mesh64::with_flags(points, mesh.triangles.clone(), Flags64::ORIENTED).expect("a valid mesh");
             move |point| {
                 let point = vector(point);
                 let projection = peer.project_local_point(point, false);
@@ -67,7 +68,7 @@ impl Peer for Parry64 {
     }
 }
 
-/// A round of a library that answers for one point at a time.
+/// Runs a round of a library that queries one point at a time.
 fn one_by_one<Q: Fn(DVec3) -> f64>(task: &Task<'_>, build: impl FnOnce(&TriMesh) -> Q) -> Round {
     let begin = cpu_seconds();
     let query = build(task.mesh);
