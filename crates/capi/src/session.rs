@@ -153,8 +153,8 @@ pub unsafe extern "C" fn isochore_session_move_to(
 ) -> Status {
     guarded(|| {
         // SAFETY: the caller guarantees it.
-        let (session, pose) = unsafe { (reference_mut("session", session)?, pose(at, rotate)?) };
-        let done = session.session.move_to(&pose, time)?;
+        let (session, key) = unsafe { (reference_mut("session", session)?, key(at, rotate)?) };
+        let done = session.session.move_to_key(&key, time)?;
         // SAFETY: the caller guarantees it.
         unsafe { put_optional(receipt, done.into()) };
         Ok(())
@@ -166,12 +166,20 @@ pub unsafe extern "C" fn isochore_session_move_to(
 /// # Safety
 /// `at` is NULL or has 3 values, `rotate` is NULL or has 4.
 unsafe fn pose(at: *const f64, rotate: *const f64) -> Result<Pose, Failure> {
+    // SAFETY: the caller guarantees it.
+    unsafe { key(at, rotate) }?.pose().map_err(Failure::argument)
+}
+
+/// The same pose as the log records it.
+///
+/// # Safety
+/// As for [`pose`].
+unsafe fn key(at: *const f64, rotate: *const f64) -> Result<Key, Failure> {
     let no_rotation = [0.0, 0.0, 1.0, 0.0];
     // SAFETY: the caller guarantees it.
     let (at, rotate) =
         unsafe { (array("at", at, 3)?, if rotate.is_null() { &no_rotation } else { array("rotate", rotate, 4)? }) };
-    let key = Key { at: [at[0], at[1], at[2]], rotate: [rotate[0], rotate[1], rotate[2], rotate[3]] };
-    key.pose().map_err(Failure::argument)
+    Ok(Key { at: [at[0], at[1], at[2]], rotate: [rotate[0], rotate[1], rotate[2], rotate[3]] })
 }
 
 /// Ends the stroke in progress and applies the volume lock. `receipt` may be NULL.

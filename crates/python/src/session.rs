@@ -16,7 +16,7 @@ use isochore_field::Pose;
 use isochore_mesh::{NONE, Origin};
 use isochore_sculpt::{
     recipe::Key,
-    session::{self, InteractiveRefinement, NormalWeights, RenderBuffers, SessionOptions, StrokeOptions},
+    session::{self, InteractiveRefinement, NormalWeights, RenderBuffers, SessionError, SessionOptions, StrokeOptions},
 };
 use numpy::{Element, IntoPyArray};
 use pyo3::{exceptions::PyBufferError, prelude::*, sync::MutexExt, types::PyDict};
@@ -115,8 +115,13 @@ impl Session {
         rotate: [f64; 4],
         time: f64,
     ) -> Result<Bound<'py, PyDict>, Failure> {
-        let pose = pose(at, rotate)?;
-        let receipt = self.change(py, |session| session.move_to(&pose, time).map_err(Failure::input))?;
+        let key = Key { at, rotate };
+        let receipt = self.change(py, |session| {
+            session.move_to_key(&key, time).map_err(|error| match error {
+                SessionError::Pose(error) => Failure::Argument(error.to_string()),
+                error => Failure::input(error),
+            })
+        })?;
         Ok(dicts::move_receipt(py, &receipt)?)
     }
 

@@ -36,6 +36,17 @@ def test_replaying_the_log_gives_the_same_bits(ball, brush):
     assert np.array_equal(points, exported.positions)
 
 
+def test_log_keeps_keys_as_given(ball, brush):
+    session = isochore.Session(ball)
+    session.begin_stroke(brush)
+    session.move_to([0, 0, 1.2])
+    session.move_to([0, 0, 1.1], rotate=[0, 0, 2, 30])
+    session.end_stroke()
+    first, second = session.log()["stroke"][0]["keys"]
+    assert first == {"at": [0, 0, 1.2]}
+    assert second == {"at": [0, 0, 1.1], "rotate": [0, 0, 2, 30]}
+
+
 def test_removed_vertices_are_mapped_to_the_merged_ones(ball, brush):
     session = isochore.Session(ball)
     before = np.arange(len(ball.positions))

@@ -103,7 +103,7 @@ impl Session {
     /// decreases.
     #[wasm_bindgen(js_name = moveTo)]
     pub fn move_to(&mut self, at: &[f64], rotate: Option<Vec<f64>>, time: Option<f64>) -> Result<MoveReceipt, JsError> {
-        let receipt = self.session.move_to(&pose(at, rotate)?, time.unwrap_or(0.0)).map_err(thrown)?;
+        let receipt = self.session.move_to_key(&key(at, rotate)?, time.unwrap_or(0.0)).map_err(thrown)?;
         Ok(MoveReceipt { receipt })
     }
 
@@ -249,6 +249,11 @@ fn pairs(ranges: &[DirtyRange]) -> Vec<u32> {
 
 /// Converts a position and an optional rotation, axis and angle in degrees, to a pose.
 fn pose(at: &[f64], rotate: Option<Vec<f64>>) -> Result<Pose, JsError> {
+    key(at, rotate)?.pose().map_err(thrown)
+}
+
+/// The same, as the log records it.
+fn key(at: &[f64], rotate: Option<Vec<f64>>) -> Result<Key, JsError> {
     let rotate = rotate.as_deref().unwrap_or(&[0.0, 0.0, 1.0, 0.0]);
-    Key { at: numbers(at)?, rotate: numbers(rotate)? }.pose().map_err(thrown)
+    Ok(Key { at: numbers(at)?, rotate: numbers(rotate)? })
 }
