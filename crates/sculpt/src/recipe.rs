@@ -28,7 +28,8 @@ pub use region::{
 };
 pub use ring::Ring;
 pub use shape::{
-    BoxMesh, Capsule, Ellipsoid, Icosphere, MeshTool, RoundedBox, Sphere, SphereMesh, TargetShape, ToolShape, Torus,
+    BoxMesh, Capsule, Ellipsoid, HostShape, Icosphere, MeshTool, RoundedBox, Sphere, SphereMesh, TargetShape,
+    ToolShape, Torus,
 };
 pub use strip::{Radius, SpinePoints, Strip, StripMode};
 pub use stroke::{Bend, Key, Move, Stamp, Stroke, Twist};

@@ -67,6 +67,8 @@ pub enum ToolShape {
     Ellipsoid(Ellipsoid),
     /// The inside of a mesh.
     Mesh(MeshTool),
+    /// A shape of the program that made the recipe. A recipe cannot describe it; the program supplies the tool to replay it.
+    Host(HostShape),
 }
 
 tagged!(ToolShape {
@@ -76,6 +78,7 @@ tagged!(ToolShape {
     "torus" => Torus(Torus),
     "ellipsoid" => Ellipsoid(Ellipsoid),
     "mesh" => Mesh(MeshTool),
+    "host" => Host(HostShape),
 });
 
 /// See [`ToolShape::Sphere`].
@@ -143,3 +146,8 @@ pub struct MeshTool {
     #[serde(default, skip_serializing_if = "super::is_default")]
     pub transform: Transform,
 }
+
+/// See [`ToolShape::Host`]. The tool that the program supplies decides the field; the other keys of this entry are information only.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HostShape {}

@@ -242,6 +242,7 @@ fn tool_shape(shape: &ToolShape) -> Check {
             Ok(())
         }
         ToolShape::Ellipsoid(shape) => all_positive("radii", &shape.radii),
+        ToolShape::Host(_) => Ok(()),
         ToolShape::Mesh(shape) => {
             at_least("resolution", shape.resolution.into(), MIN_RESOLUTION)?;
             if u64::from(shape.resolution) > MAX_RESOLUTION {

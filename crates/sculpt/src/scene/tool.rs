@@ -112,7 +112,11 @@ fn least_resolution(mesh: &TriMesh, support: f64) -> f64 {
     (CELLS_PER_SUPPORT * mesh.bounds().size().max_element() / support).ceil()
 }
 
-/// Closed-form distance of every shape except a mesh.
+/// Reason why a recipe alone cannot build the tool of a host.
+const HOST_SHAPE: &str = "is a shape of the program that logged it, which a recipe does not contain; replay it in a session of \
+                          that program, which supplies the tool";
+
+/// Closed-form distance of every shape except those of meshes and hosts.
 fn analytic_distance(shape: &ToolShape) -> Result<Arc<dyn Distance>, RecipeProblem> {
     let vector = DVec3::from_array;
     let distance: Result<Arc<dyn Distance>, mesh::ShapeError> = match shape {
@@ -128,6 +132,7 @@ fn analytic_distance(shape: &ToolShape) -> Result<Arc<dyn Distance>, RecipeProbl
             mesh::Ellipsoid::new(vector(shape.radii)).map(|distance| Arc::new(distance) as _)
         }
         ToolShape::Mesh(_) => return Err(RecipeProblem::Other("a mesh has no distance in closed form".to_owned())),
+        ToolShape::Host(_) => return Err(RecipeProblem::Other(HOST_SHAPE.to_owned())),
     };
     distance.map_err(|error| RecipeProblem::Other(error.to_string()))
 }

@@ -1,97 +1,150 @@
-//! What one move does: it finds what the tool touches, refines it, carries it along, and brings index and buffers up to date.
+//! One move of a tool: select the triangles in reach, refine them, advect their vertices, and
+//! update index and buffers.
 
 use glam::DVec3;
 use rayon::prelude::*;
 use web_time::Instant;
 
-use super::{MoveReceipt, Session, SessionError, refinement::Pass, stroke::Segment, surface::Surface};
+use super::{
+    MoveReceipt, MoveSeconds, Session, SessionError,
+    refinement::{Edits, Pass},
+    stroke::{ActiveStroke, Segment},
+    surface::Surface,
+};
 
-/// Points that one task carries. Larger leaves threads idle at the end of a short way; smaller fills the lanes of the kernel less
-/// well.
+/// Vertices that one task advects. Larger leaves threads idle at the end of a short move; smaller
+/// fills the lanes of the kernel less well.
 const CHUNK: usize = 256;
 
-/// What the flow does to some vertices.
-struct Carried {
-    /// Those that move, with where to.
+/// Images of some vertices under the flow of a segment.
+struct Images {
+    /// The vertices that move, with their new positions.
     moved: Vec<(u32, DVec3)>,
     evaluations: u64,
 }
 
+/// Measures the stages of a move one after the other.
+struct Stopwatch {
+    last: Instant,
+}
+
+impl Stopwatch {
+    fn start() -> Self {
+        Self { last: Instant::now() }
+    }
+
+    /// Seconds since the start or the last lap.
+    fn lap(&mut self) -> f64 {
+        let now = Instant::now();
+        (now - std::mem::replace(&mut self.last, now)).as_secs_f64()
+    }
+}
+
 impl Session {
-    /// Carries what the tool touches along one segment, and refines there.
-    pub(super) fn advect(&mut self, segment: Segment, done: &mut MoveReceipt) -> Result<(), SessionError> {
+    /// Moves the tool along one segment. The receipt of the stroke includes the result, even if it
+    /// is an error.
+    ///
+    /// # Errors
+    /// [`SessionError::NoStroke`], and [`SessionError::Overflow`]: no vertex has moved, but long
+    /// edges may have been split.
+    pub(super) fn advect(&mut self, segment: Segment) -> Result<MoveReceipt, SessionError> {
         let Some(stroke) = &mut self.stroke else { return Err(SessionError::NoStroke) };
         let surface = &mut self.surface;
-        let mut last = Instant::now();
-        let mut lap = || {
-            let now = Instant::now();
-            (now - std::mem::replace(&mut last, now)).as_secs_f64()
-        };
         let refine = stroke.refine.clone();
         let mask = self.mask.as_deref();
-        let mut edited = Vec::new();
+        let mut edits = Edits::default();
+        let mut seconds = MoveSeconds::default();
+        let mut stopwatch = Stopwatch::start();
 
         let mut near = surface.triangles_near(&segment);
-        done.seconds.select += lap();
+        seconds.select += stopwatch.lap();
         if let Some(options) = &refine {
-            let mut pass = Pass { surface, stroke, mask, edited: &mut edited, done };
-            pass.resolve(&near, options, &segment);
-            near.extend(&edited);
+            edits += Pass::new(surface, stroke, mask, options).split_ahead(&near, &segment);
+            near.extend(&edits.triangles);
         }
-        done.seconds.refine += lap();
+        seconds.refine += stopwatch.lap();
 
         let mut vertices = surface.vertices_of(&near);
         vertices.extend(self.loose.iter().filter(|&&vertex| segment.reach.distance(surface.position(vertex)) == 0.0));
-        done.seconds.select += lap();
+        seconds.select += stopwatch.lap();
 
-        let carried = surface.carried(&vertices, &segment);
-        done.evaluations += carried.iter().map(|part| part.evaluations).sum::<u64>();
-        let carried = || carried.iter().flat_map(|part| &part.moved).copied();
-        let overflow = carried().find(|(_, position)| !position.is_finite()).map(|(vertex, _)| vertex);
-        let mut moved = Vec::new();
-        if overflow.is_none() {
-            for (vertex, position) in carried() {
-                surface.positions.set(vertex, position);
-                moved.push(vertex);
-            }
-            stroke.way.push(segment);
+        let images = surface.images(&vertices, &segment);
+        let evaluations = images.iter().map(|part| part.evaluations).sum::<u64>();
+        let moved = surface.move_vertices(&images);
+        if moved.is_ok() {
+            stroke.path.push(segment);
         }
-        done.moved_vertices = moved.len();
-        done.seconds.flow += lap();
+        seconds.flow += stopwatch.lap();
 
-        let mut changed = surface.triangles_at(&moved, &near);
+        let moved_vertices = moved.as_deref().unwrap_or_default();
+        let mut changed = surface.triangles_at(moved_vertices, &near);
         stroke.note_moved(&changed, surface.corners.items().len());
-        if let Some(options) = refine.as_ref().filter(|_| overflow.is_none()) {
-            let mut pass = Pass { surface, stroke, mask, edited: &mut edited, done };
-            pass.improve(&changed, options);
+        if let Some(options) = refine.as_ref().filter(|_| moved.is_ok()) {
+            edits += Pass::new(surface, stroke, mask, options).improve(&changed);
         }
-        if !edited.is_empty() {
-            edited.extend(&changed);
+        if !edits.triangles.is_empty() {
+            let edited = [&edits.triangles[..], &changed].concat();
             changed = surface.triangles_around(&[], &edited);
         }
-        done.seconds.refine += lap();
+        seconds.refine += stopwatch.lap();
 
         surface.update_tree(&changed);
-        done.seconds.index += lap();
+        seconds.index += stopwatch.lap();
         let shaded = surface.vertices_of(&changed);
-        let loose = moved.iter().copied().filter(|vertex| self.loose.binary_search(vertex).is_ok());
+        let loose = moved_vertices.iter().copied().filter(|vertex| self.loose.binary_search(vertex).is_ok());
         surface.write_buffers(&shaded, loose);
-        done.seconds.buffers += lap();
-        overflow.map_or(Ok(()), |vertex| Err(SessionError::Overflow { vertex }))
+        seconds.buffers += stopwatch.lap();
+
+        let receipt = MoveReceipt {
+            moved_vertices: moved_vertices.len(),
+            inserted_vertices: edits.split_volumes.len(),
+            removed_vertices: edits.removed_vertices,
+            flipped_edges: edits.flipped_edges,
+            is_limited: edits.is_limited,
+            refused_splits: edits.refused_splits,
+            evaluations: evaluations + edits.evaluations,
+            seconds,
+        };
+        stroke.note_edits(&edits);
+        stroke.receipt.add(&receipt);
+        moved.map(|_| receipt)
     }
 }
 
 impl Surface {
-    /// Where the flow of a segment takes those of `vertices` that it moves by any bit.
-    fn carried(&self, vertices: &[u32], segment: &Segment) -> Vec<Carried> {
+    /// Advects `vertices` along a segment without moving them. Vertices whose bits do not change
+    /// are left out.
+    fn images(&self, vertices: &[u32], segment: &Segment) -> Vec<Images> {
         let bits = |point: DVec3| point.to_array().map(f64::to_bits);
-        let carry = |chunk: &[u32]| {
+        let advect = |chunk: &[u32]| {
             let mut points: Vec<DVec3> = chunk.iter().map(|&vertex| self.position(vertex)).collect();
             let evaluations = segment.stroke.advect(&mut points);
-            let carried = chunk.iter().copied().zip(points);
-            let moved = carried.filter(|&(vertex, point)| bits(self.position(vertex)) != bits(point));
-            Carried { moved: moved.collect(), evaluations }
+            let images = chunk.iter().copied().zip(points);
+            let moved = images.filter(|&(vertex, point)| bits(self.position(vertex)) != bits(point));
+            Images { moved: moved.collect(), evaluations }
         };
-        vertices.par_chunks(CHUNK).map(carry).collect()
+        vertices.par_chunks(CHUNK).map(advect).collect()
+    }
+
+    /// Moves vertices to their images and returns these vertices. If a coordinate is not finite,
+    /// none moves.
+    fn move_vertices(&mut self, images: &[Images]) -> Result<Vec<u32>, SessionError> {
+        let images = || images.iter().flat_map(|part| &part.moved).copied();
+        if let Some((vertex, _)) = images().find(|(_, position)| !position.is_finite()) {
+            return Err(SessionError::Overflow { vertex });
+        }
+        images().for_each(|(vertex, position)| self.positions.set(vertex, position));
+        Ok(images().map(|(vertex, _)| vertex).collect())
+    }
+}
+
+impl ActiveStroke {
+    /// Adds the volumes of edits.
+    pub(super) fn note_edits(&mut self, edits: &Edits) {
+        edits.split_volumes.iter().for_each(|&volume| self.splits.add(volume));
+        for volume in &edits.remeshing_volumes {
+            self.remeshing.add(*volume);
+            self.remeshed += volume.abs();
+        }
     }
 }

@@ -1,60 +1,76 @@
-//! What a renderer draws, and which parts of it have changed.
+//! Buffers for a renderer, and the ranges that have changed.
 
-/// Elements in a page: changes are told by whole pages. Larger sends what has not changed; smaller makes more ranges.
+/// Elements per page. Changes are reported in whole pages. Larger sends unchanged elements; smaller
+/// makes more ranges.
 const PAGE: usize = 256;
 
-/// Pages apart by this number or fewer are told as one range, so that ranges stay few.
+/// Pages separated by at most this number of pages are merged into one range. Larger sends
+/// unchanged elements; smaller makes more ranges.
 const GAP: u32 = 2;
 
-/// Buffers for a renderer, in place: one entry a *render vertex*, which is a vertex as the triangles on one side of a seam or a
-/// hard edge see it. Render vertex i is vertex i of the mesh as opened as long as there are that many; where vertices have several
-/// render vertices, the others follow.
+/// Buffers for a renderer, in place, with one entry per *render vertex*: a vertex as seen by the
+/// triangles on one side of a seam or hard edge. The first render vertices are the vertices of the
+/// mesh as opened, in order. If a vertex has several render vertices, the others follow later.
 ///
-/// What is removed leaves a hole: a triangle stays as three times index zero, which draws nothing; a vertex is not drawn any more.
-/// Later strokes fill the holes, but for those of vertices of the mesh as opened, so that buffers do not grow with each stroke.
+/// A removed triangle remains as three indices of zero, which draw nothing. A removed vertex
+/// remains but is not drawn. Later strokes reuse these entries, except those of vertices of the
+/// mesh as opened, so the buffers do not grow with the number of strokes.
 #[derive(Debug, Clone, Copy)]
 pub struct RenderBuffers<'a> {
-    /// Grows whenever a buffer has moved in memory, so that addresses taken before are stale.
+    /// Increases whenever a buffer has moved in memory. Earlier addresses are then stale.
     pub generation: u64,
     /// Positions, model units.
     pub positions: &'a [[f32; 3]],
-    /// Unit normals; zero where no triangle has any area.
+    /// Unit normals; zero if all triangles of the vertex have zero area.
     pub normals: &'a [[f32; 3]],
     /// Sets of texture coordinates.
     pub uvs: &'a [Vec<[f32; 2]>],
-    /// Linear RGBA; empty where the mesh has no colors.
+    /// Linear RGBA; empty if the mesh has no colors.
     pub colors: &'a [[f32; 4]],
-    /// Three render vertices a triangle, counter-clockwise seen from outside.
+    /// Three render vertices per triangle, counter-clockwise seen from outside.
     pub indices: &'a [[u32; 3]],
 }
 
-/// Elements from `start` to before `end`.
+/// The elements `start..end`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DirtyRange {
-    /// The first element.
+    /// First element.
     pub start: u32,
-    /// The element after the last.
+    /// One past the last element.
     pub end: u32,
 }
 
-/// What has changed in the buffers since they were last asked for.
+/// Ranges of the buffers that have changed since the last call of
+/// [`take_changes`](super::Session::take_changes).
 ///
-/// First give your copies the lengths of the buffers, then copy the ranges: the copies are then equal to the buffers.
+/// To update copies of the buffers, resize them to the lengths of the buffers, then copy the
+/// ranges.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Changes {
     /// The generation of the buffers, as in [`RenderBuffers`].
     pub generation: u64,
-    /// Of positions.
+    /// Changed positions.
     pub positions: Vec<DirtyRange>,
-    /// Of normals.
+    /// Changed normals.
     pub normals: Vec<DirtyRange>,
-    /// Of all sets of texture coordinates and of colors, and of where render vertices [come from](super::Session::origin_of).
+    /// Changed texture coordinates of all sets, colors, and [origins](super::Session::origin_of).
     pub attributes: Vec<DirtyRange>,
-    /// Of indices, in triangles.
+    /// Changed indices, counted in triangles.
     pub indices: Vec<DirtyRange>,
 }
 
-/// Pages that have changed.
+/// Changes of the buffers since they were last reported.
+#[derive(Debug, Clone, Default)]
+pub(super) struct DirtyBuffers {
+    pub(super) generation: u64,
+    pub(super) addresses: Vec<usize>,
+    pub(super) positions: DirtyPages,
+    pub(super) normals: DirtyPages,
+    pub(super) attributes: DirtyPages,
+    pub(super) indices: DirtyPages,
+}
+
+/// Set of changed pages.
 #[derive(Debug, Clone, Default)]
 pub(super) struct DirtyPages {
     is_dirty: Vec<bool>,
@@ -74,12 +90,12 @@ impl DirtyPages {
         }
     }
 
-    /// Marks all from `start` to before `end`.
+    /// Marks `start..end`.
     pub(super) fn mark_range(&mut self, start: usize, end: usize) {
         (start..end).step_by(PAGE).chain((start < end).then(|| end - 1)).for_each(|index| self.mark(index as u32));
     }
 
-    /// The ranges below `length`, in order, and forgets them.
+    /// Returns the ranges below `length` in ascending order, and clears the set.
     pub(super) fn take(&mut self, length: usize) -> Vec<DirtyRange> {
         self.pages.sort_unstable();
         let mut ranges: Vec<DirtyRange> = Vec::new();
@@ -102,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_hold_what_was_marked_and_are_few() {
+    fn ranges_cover_the_marks_and_merge_near_pages() {
         let mut pages = DirtyPages::default();
         [5000, 3, 4, 700, 299].into_iter().for_each(|index| pages.mark(index));
         pages.mark_range(9000, 9700);

@@ -1,4 +1,4 @@
-//! Single edits of the surface: topology together with what triangles and corners carry.
+//! Single edits of the surface: topology together with the attributes of triangles and corners.
 
 use glam::DVec3;
 use isochore_mesh::{NONE, Split, next_half_edge, previous_half_edge};
@@ -8,13 +8,13 @@ use super::{
     surface::{Patch, RenderVertex, Surface},
 };
 
-/// One edge bit of a [`Patch`].
+/// Hard-edge bit of a [`Patch`] for one side, as 0 or 1.
 fn bit(patch: Patch, side: usize) -> u8 {
     patch.hard >> (side % 3) & 1
 }
 
 impl Surface {
-    /// The render vertex at the start of a half-edge, as its own triangle sees it.
+    /// The render vertex at the start of a half-edge, in the triangle of the half-edge.
     #[inline]
     pub(super) fn corner(&self, half_edge: u32) -> u32 {
         self.corners.items()[half_edge as usize / 3][half_edge as usize % 3]
@@ -25,8 +25,8 @@ impl Surface {
         self.positions.items()[vertex as usize]
     }
 
-    /// Whether both sides of the edge see the same render vertices, shading and material: no seam of any kind, nor the end of the
-    /// surface.
+    /// Whether both sides of the edge have the same render vertices, shading and material. False
+    /// for a seam of any kind and for the boundary.
     pub(super) fn is_seamless(&self, half_edge: u32) -> bool {
         let twin = self.topology.twin(half_edge);
         twin != NONE
@@ -41,7 +41,7 @@ impl Surface {
         self.opened.triangle_materials.get(parent as usize).copied()
     }
 
-    /// Splits an edge by a vertex at `position`, and returns what came of it and how much volume that adds.
+    /// Splits an edge by a vertex at `position`. Returns the split and the volume that it adds.
     pub(super) fn split(&mut self, half_edge: u32, position: DVec3) -> (Split, f64) {
         let twin = self.topology.twin(half_edge);
         let [from, to] = [half_edge, next_half_edge(half_edge)].map(|half_edge| self.corner(half_edge));
@@ -65,8 +65,8 @@ impl Surface {
         let side = twin as usize % 3;
         let (mut corners, patch) = (self.corners.get(far), self.patches.get(far));
         let (far_to, far_from, apex) = (corners[side], corners[(side + 1) % 3], corners[(side + 2) % 3]);
-        let is_one = [far_from, far_to] == [from, to];
-        let inserted = if is_one { inserted } else { self.insert_corner(split.vertex, [far_from, far_to], far) };
+        let is_seamless = [far_from, far_to] == [from, to];
+        let inserted = if is_seamless { inserted } else { self.insert_corner(split.vertex, [far_from, far_to], far) };
         corners[side] = inserted;
         self.set_corners(far, corners);
         self.set_corners(added, [far_to, inserted, apex]);
@@ -82,7 +82,8 @@ impl Surface {
         self.add_render_vertex(RenderVertex { vertex, origin })
     }
 
-    /// Volume between the two triangles at an edge and those that a vertex at `position` splits them into.
+    /// Volume between the two triangles at an edge and those that a vertex at `position` splits
+    /// them into.
     fn volume_under(&self, half_edge: u32, position: DVec3) -> f64 {
         let a = self.position(self.topology.start(half_edge));
         let b = self.position(self.topology.end(half_edge)) - a;
@@ -94,7 +95,8 @@ impl Surface {
         (near + far) / 6.0
     }
 
-    /// Turns an edge without a seam, and returns how much volume that adds. Ask [`EditMesh::can_flip`] first.
+    /// Flips a seamless edge and returns the volume that this adds. Requires
+    /// [`EditMesh::can_flip`].
     ///
     /// [`EditMesh::can_flip`]: isochore_mesh::EditMesh::can_flip
     pub(super) fn flip(&mut self, half_edge: u32) -> f64 {
@@ -110,7 +112,7 @@ impl Surface {
         far_corners[(far_side + 1) % 3] = apex;
         self.set_corners(near, corners);
         self.set_corners(far, far_corners);
-        // Each triangle gives the edge behind the turned one to the other.
+        // Each triangle passes the edge after the flipped one to the other triangle.
         let hard = |own: Patch, side: usize, other: Patch, other_side: usize| {
             bit(other, other_side + 1) << side | bit(own, side + 2) << ((side + 2) % 3)
         };
@@ -119,7 +121,7 @@ impl Surface {
         gained
     }
 
-    /// Volume that turning an edge adds.
+    /// Volume that flipping an edge adds: the tetrahedron of the two triangles.
     pub(super) fn volume_of_flip(&self, half_edge: u32) -> f64 {
         let twin = self.topology.twin(half_edge);
         let a = self.position(self.topology.start(half_edge));
@@ -128,8 +130,8 @@ impl Surface {
         d.dot(b.cross(c)) / 6.0
     }
 
-    /// Merges the start of a half-edge into its end and returns how much volume that adds. Ask
-    /// [`EditMesh::can_collapse`] and [`is_free`](Self::is_free) first.
+    /// Merges the start of a half-edge into its end and returns the volume that this adds. Requires
+    /// [`EditMesh::can_collapse`] and [`is_free`](Self::is_free).
     ///
     /// [`EditMesh::can_collapse`]: isochore_mesh::EditMesh::can_collapse
     pub(super) fn collapse(&mut self, half_edge: u32) -> f64 {
@@ -138,7 +140,8 @@ impl Surface {
         let [removed, kept] = [half_edge, next_half_edge(half_edge)].map(|half_edge| self.corner(half_edge));
         let (side, far_side) = (half_edge as usize % 3, twin as usize % 3);
         let (patch, far_patch) = (self.patches.get(half_edge / 3), self.patches.get(twin / 3));
-        // The edges that the removed triangles leave behind.
+        // Outer edges of the two removed triangles: each passes its hard-edge bit to the edge it is
+        // merged with.
         let inherited = [
             (self.topology.twin(previous_half_edge(half_edge)), bit(patch, side + 1)),
             (self.topology.twin(next_half_edge(twin)), bit(far_patch, far_side + 2)),
@@ -147,13 +150,13 @@ impl Surface {
         let fan: Vec<u32> = self.topology.fan(start).collect();
         self.topology.collapse(half_edge);
         self.merges.push([start, end]);
-        // Inside one piece of the surface, all triangles see the same one.
+        // A free vertex has one render vertex for all its triangles.
         self.remove_render_vertex(removed);
-        for leaving in fan {
-            let mut corners = self.corners.get(leaving / 3);
-            corners[leaving as usize % 3] = kept;
-            let is_there = self.topology.triangles()[leaving as usize / 3].is_alive();
-            self.set_corners(leaving / 3, if is_there { corners } else { [0; 3] });
+        for outgoing in fan {
+            let mut corners = self.corners.get(outgoing / 3);
+            corners[outgoing as usize % 3] = kept;
+            let is_alive = self.topology.triangles()[outgoing as usize / 3].is_alive();
+            self.set_corners(outgoing / 3, if is_alive { corners } else { [0; 3] });
         }
         for (half_edge, hard) in inherited {
             let patch = self.patches.get(half_edge / 3);
@@ -167,12 +170,13 @@ impl Surface {
     pub(super) fn volume_of_collapse(&self, half_edge: u32) -> f64 {
         let kept = self.topology.end(half_edge);
         let origin = self.position(kept);
-        // Seen from where the vertex goes, only the triangles that it is not yet a corner of have a volume, and lose it.
+        // With the kept vertex as origin, all new triangles have volume zero, so the change is
+        // minus the old volume of the fan.
         let lost: f64 = self
             .topology
             .fan(self.topology.start(half_edge))
-            .map(|leaving| {
-                let corners = self.topology.triangles()[leaving as usize / 3].vertices;
+            .map(|outgoing| {
+                let corners = self.topology.triangles()[outgoing as usize / 3].vertices;
                 let [a, b, c] = corners.map(|vertex| self.position(vertex) - origin);
                 a.dot(b.cross(c))
             })
@@ -180,7 +184,8 @@ impl Surface {
         -lost / 6.0
     }
 
-    /// Whether a vertex lies inside one piece of the surface: no seam, no hard edge, no border of materials, no boundary at it.
+    /// Whether a vertex has only seamless edges: it is not on a seam, a hard edge, a border between
+    /// materials or the boundary.
     pub(super) fn is_free(&self, vertex: u32) -> bool {
         self.topology.outgoing(vertex) != NONE && self.topology.fan(vertex).all(|half_edge| self.is_seamless(half_edge))
     }

@@ -1,76 +1,77 @@
-//! What can go wrong.
+//! Errors of sessions.
 
 use isochore_field::StrokeError;
 use isochore_mesh::{BvhError, EditMeshError, MeshError};
 
 use crate::recipe::RecipeError;
 
-/// Why a session cannot be opened on a mesh.
+/// Errors of [`Session::open`](super::Session::open).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum OpenError {
     /// An index is out of range or a coordinate is not finite.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The triangles are no oriented surface.
+    /// The triangles do not form an oriented manifold surface.
     #[error("the mesh cannot be edited: {0}")]
     Topology(#[from] EditMeshError),
-    /// The triangles cannot be searched.
+    /// The search tree cannot be built.
     #[error(transparent)]
     Search(#[from] BvhError),
-    /// Attributes do not go with the triangles or vertices that they should belong to.
-    #[error("the mesh has {found} {attribute} for {expected}")]
+    /// The number of attributes differs from the number of triangles or vertices.
+    #[error("the mesh has {found} {attribute} instead of {expected}")]
     AttributeCount {
-        /// Which attribute.
+        /// Name of the attribute.
         attribute: &'static str,
-        /// Entries it has.
+        /// Number of entries.
         found: usize,
-        /// Entries it should have.
+        /// Required number of entries.
         expected: usize,
     },
-    /// The options cannot be used.
+    /// An option is invalid.
     #[error(transparent)]
     Options(#[from] RecipeError),
 }
 
-/// Why a session refuses a call. It is then as it was before, but for one case: a move that ends in an [`Overflow`](Self::Overflow)
-/// leaves edges split that it found too long, which moves nothing, and which the receipt of the stroke counts.
+/// Errors of a session. A failed call leaves the session unchanged, with one exception: a move that
+/// fails with [`Overflow`](Self::Overflow) may have split long edges. This moves no vertex, and the
+/// receipt of the stroke includes it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SessionError {
-    /// There is a stroke that has not ended.
+    /// A stroke has begun and not ended.
     #[error("a stroke is under way; end or cancel it first")]
     StrokeUnderWay,
-    /// There is no stroke.
+    /// No stroke has begun.
     #[error("no stroke is under way; begin one first")]
     NoStroke,
-    /// A pose has no direction to turn about.
+    /// A key contains NaN or infinity, or its rotation has a zero axis.
     #[error(transparent)]
     Pose(#[from] RecipeError),
-    /// The tool's way cannot be, from the last pose to this one.
+    /// The tool cannot move from the last pose to this one.
     #[error(transparent)]
     Stroke(#[from] StrokeError),
-    /// Time is not finite, or runs backward.
-    #[error("the time {time} is no number or lies before the last, {last}")]
+    /// The time is not finite, or it decreases.
+    #[error("the time {time} is not finite or earlier than the previous time {last}")]
     Time {
-        /// The time given.
+        /// The rejected time.
         time: f64,
-        /// The one before.
+        /// The previous time; −∞ for the first pose.
         last: f64,
     },
-    /// A length or share of the refinement is out of range.
+    /// A length or fraction of the refinement is out of range.
     #[error("refinement: {0}")]
     Refinement(&'static str),
-    /// No vertex ever had this number.
-    #[error("{vertex} is none of the {count} vertices")]
+    /// The vertex does not exist.
+    #[error("vertex {vertex} is out of range: the mesh has {count} vertices")]
     NoVertex {
-        /// The number.
+        /// Number of the vertex.
         vertex: u32,
-        /// How many vertices there are, removed ones included.
+        /// Number of vertices, removed ones included.
         count: usize,
     },
-    /// A coordinate would leave the range of numbers.
-    #[error("vertex {vertex} would be carried out of the range of numbers")]
+    /// A coordinate would overflow.
+    #[error("the move would overflow the coordinates of vertex {vertex}; scale the model down")]
     Overflow {
-        /// The vertex.
+        /// Number of the vertex.
         vertex: u32,
     },
 }

@@ -1,4 +1,4 @@
-//! The surface as a mesh without holes in its numbering.
+//! Export of the surface as a mesh with consecutive numbers.
 
 use glam::DVec3;
 use isochore_field::Lock;
@@ -6,24 +6,39 @@ use isochore_mesh::{NONE, Origin, Resampling, TriMesh, VertexOrigin};
 
 use super::Session;
 
-/// The surface of a session as a mesh.
+/// Result of [`Session::export`].
 #[derive(Debug, Clone)]
 pub struct Exported {
-    /// The mesh, with all attributes of the one that was opened.
+    /// The mesh, with all attributes of the mesh as opened.
     pub mesh: TriMesh,
-    /// By vertex of the mesh the vertex of the session.
+    /// For each vertex of the mesh, its number in the session.
     pub vertices: Vec<u32>,
-    /// What the locks of all strokes did together; none where it was not asked for, or they did nothing.
+    /// Combined displacement by the locks of all strokes. `None` if it is excluded or zero.
     pub lock: Option<Lock>,
 }
 
 impl Session {
-    /// The surface as it stands, without what was removed; the stroke under way included. Vertices and triangles keep their order.
+    /// The current surface without removed elements. Includes the stroke under way. Vertices and
+    /// triangles keep their order.
     ///
-    /// Attributes are interpolated once from the mesh as opened, by each corner's origin; shading normals are turned with the
-    /// surface. With `lock`, vertices are where the host sees them, which keeps the volume of the mesh as opened: the flow and what
-    /// the lock has added at the end of each stroke; the stroke under way has none yet. Without, they are where the flow alone has
-    /// taken them, to the bits that the log gives elsewhere.
+    /// Attributes are interpolated once from the mesh as opened, at the origin of each corner.
+    /// Shading normals are rotated with the surface.
+    ///
+    /// With `lock`, positions are those that the host sees: the flow plus the displacement that
+    /// each stroke's lock has added at its end. They have the volume of the mesh as opened, except
+    /// for a stroke under way. Without `lock`, positions are those of the flow alone, which a
+    /// replay of the [`log`](Self::log) reproduces bit for bit.
+    ///
+    /// ```
+    /// # use isochore_mesh::primitives::icosphere;
+    /// # use isochore_sculpt::session::{Session, SessionOptions};
+    /// let session = Session::open(icosphere(1.0, 2), SessionOptions::default())?;
+    /// let exported = session.export(true);
+    /// assert_eq!(exported.mesh, icosphere(1.0, 2));
+    /// assert_eq!(exported.vertices.len(), 162);
+    /// assert!(exported.lock.is_none());
+    /// # Ok::<(), isochore_sculpt::session::OpenError>(())
+    /// ```
     pub fn export(&self, lock: bool) -> Exported {
         let surface = &self.surface;
         let mut number = vec![NONE; self.vertex_count()];
@@ -34,6 +49,7 @@ impl Session {
         let alive =
             || (0..surface.corners.items().len()).filter(|&triangle| surface.topology.triangles()[triangle].is_alive());
         let origin = |render: u32| surface.render.get(render).origin;
+        // Never used: every corner has an origin.
         let lost = Origin { triangle: 0, weights: DVec3::X };
         let resampling = Resampling {
             positions: vertices.iter().map(|&vertex| surface.position(vertex)).collect(),
@@ -67,9 +83,11 @@ impl Session {
         if (vertex as usize) < self.surface.opened.positions.len() {
             return VertexOrigin::Vertex(vertex);
         }
-        let leaving = self.surface.topology.outgoing(vertex);
-        let origin = (leaving != NONE).then(|| self.surface.render.get(self.surface.corner(leaving)).origin).flatten();
-        // An inserted vertex that is there has triangles, and its render vertices come from somewhere.
+        let outgoing = self.surface.topology.outgoing(vertex);
+        let origin =
+            (outgoing != NONE).then(|| self.surface.render.get(self.surface.corner(outgoing)).origin).flatten();
+        // An inserted vertex that is not removed has triangles, and so its render vertices have
+        // origins.
         origin.map_or(VertexOrigin::Vertex(0), VertexOrigin::Point)
     }
 }

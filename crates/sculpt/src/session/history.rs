@@ -1,10 +1,10 @@
-//! Undo and redo: the strokes done, with the way back, and the strokes undone, with the way forth.
+//! Undo and redo: the strokes done and undone, each with the difference to its other state.
 
 use std::collections::VecDeque;
 
-use super::{History, log::LoggedStroke, surface::SurfaceDelta};
+use super::{History, log::LoggedStroke, surface::delta::SurfaceDelta};
 
-/// A stroke and the way to its other end.
+/// A stroke with the difference between the states before and after it.
 #[derive(Debug, Clone)]
 pub(super) struct Step {
     pub(super) stroke: LoggedStroke,
@@ -16,12 +16,13 @@ pub(super) struct Steps {
     /// Strokes that can no longer be undone.
     pub(super) forgotten: Vec<LoggedStroke>,
     pub(super) done: VecDeque<Step>,
-    /// The next to be redone is the last.
+    /// The last one is the next to redo.
     pub(super) undone: Vec<Step>,
 }
 
 impl Steps {
-    /// Takes in a new stroke, forgets what was undone, and the oldest as far as `most` bytes demand. Returns how many.
+    /// Adds a new stroke and discards the undone ones. Forgets the oldest strokes until at most
+    /// `most` bytes are in use, but keeps the last stroke. Returns the number of forgotten strokes.
     pub(super) fn push(&mut self, step: Step, most: usize) -> usize {
         self.undone.clear();
         self.done.push_back(step);

@@ -1,42 +1,41 @@
-//! Vertices that the stroke under way has inserted, and where all vertices lay when it began.
+//! Vertices that the stroke under way has inserted.
 
 use glam::DVec3;
-
-use super::surface::Surface;
 
 /// A vertex that the stroke under way has inserted.
 #[derive(Debug, Clone, Copy)]
 struct Inserted {
     vertex: u32,
-    /// Where it lies on the surface as it stood when the stroke began.
+    /// Position on the surface at the beginning of the stroke.
     base: DVec3,
-    /// How many times what had moved was halved for it.
+    /// How often an edge that had moved was halved to insert it.
     halvings: u8,
 }
 
 /// The vertices that the stroke under way has inserted.
 #[derive(Debug, Clone, Default)]
 pub(super) struct InsertedVertices {
-    /// Vertices before this one are those of the mesh as opened.
+    /// Number of vertices of the mesh as opened.
     first: u32,
-    /// By vertex from the first on, where in `vertices` it may be; right only if these agree, so it is never cleared.
+    /// Indices into `vertices` by vertex − `first`. An entry is valid only if `vertices` confirms
+    /// it, so that this need not be cleared.
     slots: Vec<u32>,
     vertices: Vec<Inserted>,
 }
 
 impl InsertedVertices {
-    /// None yet, on a mesh that was opened with `count` vertices.
+    /// The empty set for a mesh that was opened with `count` vertices.
     pub(super) fn new(count: usize) -> Self {
         Self { first: count as u32, ..Self::default() }
     }
 
-    /// Forgets all.
+    /// Removes all vertices from the set.
     pub(super) fn clear(&mut self) {
         self.vertices.clear();
     }
 
-    /// Takes a vertex in that lies at `base` on the surface as it stood when the stroke began, for which what had moved was halved
-    /// `halvings` times.
+    /// Adds a vertex. `base` is its position on the surface at the beginning of the stroke, and
+    /// `halvings` the number of times that an edge that had moved was halved to insert it.
     pub(super) fn push(&mut self, vertex: u32, base: DVec3, halvings: u8) {
         let index = (vertex - self.first) as usize;
         if index >= self.slots.len() {
@@ -46,29 +45,25 @@ impl InsertedVertices {
         self.vertices.push(Inserted { vertex, base, halvings });
     }
 
-    /// Whether a vertex is one of these.
+    /// Whether the stroke has inserted the vertex.
     pub(super) fn contains(&self, vertex: u32) -> bool {
         self.get(vertex).is_some()
+    }
+
+    /// Position of an inserted vertex on the surface at the beginning of the stroke.
+    pub(super) fn base(&self, vertex: u32) -> Option<DVec3> {
+        self.get(vertex).map(|inserted| inserted.base)
+    }
+
+    /// How often the stroke has halved an edge that had moved to insert the vertex; zero for other
+    /// vertices.
+    pub(super) fn halvings(&self, vertex: u32) -> u8 {
+        self.get(vertex).map_or(0, |inserted| inserted.halvings)
     }
 
     fn get(&self, vertex: u32) -> Option<&Inserted> {
         let index = vertex.checked_sub(self.first)?;
         let slot = *self.slots.get(index as usize)?;
         self.vertices.get(slot as usize).filter(|inserted| inserted.vertex == vertex)
-    }
-}
-
-impl Surface {
-    /// Where a vertex lies on the surface as it stood when the stroke began.
-    pub(super) fn base(&self, vertex: u32) -> DVec3 {
-        match self.inserted.get(vertex) {
-            Some(inserted) => inserted.base,
-            None => self.positions.original(vertex).unwrap_or_else(|| self.position(vertex)),
-        }
-    }
-
-    /// How many times the stroke has halved what it had moved to insert a vertex.
-    pub(super) fn halvings(&self, vertex: u32) -> u8 {
-        self.inserted.get(vertex).map_or(0, |inserted| inserted.halvings)
     }
 }

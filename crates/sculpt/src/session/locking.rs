@@ -1,4 +1,5 @@
-//! The volume lock at the end of a stroke: a small displacement of what the stroke has moved, kept apart from the flow.
+//! The volume lock at the end of a stroke: a small displacement of the moved vertices, stored
+//! separately from the flow.
 
 use glam::DVec3;
 use isochore_field::lock_part;
@@ -6,21 +7,22 @@ use isochore_mesh::CompensatedSum;
 
 use super::{LockSkipped, stroke::ActiveStroke, surface::Surface};
 
-/// What the host sees after the lock of a stroke.
+/// Result of the lock of a stroke.
 pub(super) struct Locked {
-    /// Longest displacement, model units, or why there was none.
+    /// Longest displacement, model units, or the reason why the lock was skipped.
     pub(super) max_shift: Result<f64, LockSkipped>,
-    /// Change of the volume since the stroke began, of what the host sees.
+    /// Change of the shown volume by the stroke, after the lock.
     pub(super) shown_change: f64,
 }
 
 impl ActiveStroke {
-    /// Moves the offsets of what the stroke has moved so that the volume that the host sees, `excess` more than it should be when the
-    /// stroke began, is `size` again. Takes time in proportion to what the stroke touched.
+    /// Adjusts the offsets of the vertices that the stroke has moved so that the shown volume is
+    /// `size` again. `excess` is its deviation at the beginning of the stroke. Takes time
+    /// proportional to the part that the stroke touched.
     pub(super) fn lock(&self, surface: &mut Surface, excess: f64, size: f64) -> Locked {
         let touched: Vec<u32> = self.touched(surface).collect();
         let change = self.shown_change(surface, &touched);
-        let there: Vec<[u32; 3]> = touched
+        let alive: Vec<[u32; 3]> = touched
             .iter()
             .map(|&triangle| &surface.topology.triangles()[triangle as usize])
             .filter(|triangle| triangle.is_alive())
@@ -28,10 +30,10 @@ impl ActiveStroke {
             .collect();
         let vertices = surface.vertices_of(&touched);
         let number = |vertex: u32| vertices.partition_point(|&other| other < vertex) as u32;
-        let triangles: Vec<[u32; 3]> = there.iter().map(|triangle| triangle.map(number)).collect();
+        let triangles: Vec<[u32; 3]> = alive.iter().map(|triangle| triangle.map(number)).collect();
         let rest: Vec<DVec3> =
             vertices.iter().map(|&vertex| surface.base(vertex) + surface.offsets.get(vertex)).collect();
-        // A vertex that has not moved must be equal to itself at rest.
+        // The same sum as in `rest`, so that the two are equal for a vertex that has not moved.
         let flow = |&vertex: &u32| surface.position(vertex) + surface.offsets.get(vertex);
         let mut image: Vec<DVec3> = vertices.iter().map(flow).collect();
         let Some(lock) = lock_part(&rest, &mut image, &triangles, -(excess + change), size) else {
@@ -48,13 +50,14 @@ impl ActiveStroke {
         Locked { max_shift: Ok(lock.max_shift), shown_change: self.shown_change(surface, &touched) }
     }
 
-    /// Change of the volume since the stroke began, of what the host sees.
+    /// Change of the shown volume since the beginning of the stroke.
     fn shown_change(&self, surface: &Surface, touched: &[u32]) -> f64 {
         let journal = surface.topology.journal();
         let before = |vertex: u32| {
             let offset = surface.offsets.original(vertex).unwrap_or(DVec3::ZERO);
             surface.base(vertex) + offset
         };
+        // Any origin gives the same sum; a near one keeps rounding small.
         let origin = touched.iter().find_map(|&triangle| surface.shown_corners(triangle));
         let origin = origin.map_or(DVec3::ZERO, |corners| corners[0]);
         let mut sum = CompensatedSum::default();

@@ -1,53 +1,62 @@
-//! The log of a session, which is a recipe.
+//! The log of a session, which is a recipe, and its replay in a session.
 
 use std::{collections::BTreeMap, sync::Arc};
 
 use glam::DVec3;
 use isochore_field as field;
-use isochore_mesh::Monitor;
+use isochore_mesh::{Cancelled, Monitor};
 
-use super::{Session, SessionError, SessionTool, StrokeOptions, StrokeReceipt};
+use super::{Session, SessionError, SessionTool, StrokeOptions, StrokeReceipt, Supplies};
 use crate::{
-    recipe::{Integrate, Key, Move, Recipe, Refine, Stroke, Volume},
-    scene::{Meshes, SceneError},
+    recipe::{Integrate, Key, Move, Recipe, Refine, Stroke, ToolShape, Volume},
+    scene::SceneError,
 };
 
-/// A stroke as the log tells of it.
+/// A stroke as recorded in the log.
 #[derive(Debug, Clone)]
 pub(super) struct LoggedStroke {
     pub(super) tool: Arc<SessionTool>,
     pub(super) keys: Vec<Key>,
-    /// The whole change of the volume.
+    /// Total change of the volume before any lock.
     pub(super) volume_change: Option<f64>,
-    /// The same of what the host sees: what the lock has left.
+    /// Change of the shown volume: what remains after the lock.
     pub(super) shown_change: f64,
 }
 
-/// Why a recipe could not be carried out in a session.
+/// Errors of [`Session::replay`].
 #[derive(Debug, thiserror::Error)]
 pub enum SessionReplayError {
-    /// A tool cannot be made, or the recipe is wrong in itself.
+    /// The recipe is invalid, or a tool cannot be built.
     #[error(transparent)]
     Recipe(#[from] SceneError),
-    /// Only moves of tools can be strokes of a session.
-    #[error("stroke.{index} is of kind `{kind}`, and a session only moves tools")]
+    /// The recipe names a tool of the host that was not supplied.
+    #[error("tools.{name}.shape: is a shape of the host, which a recipe does not contain; supply the tool `{name}`")]
+    MissingTool {
+        /// Name of the tool in the recipe.
+        name: String,
+    },
+    /// The stroke is not a move of a tool.
+    #[error("stroke.{index} is of kind `{kind}`; a session replays only strokes of kind `move`")]
     Kind {
-        /// Its number, from zero.
+        /// Index of the stroke, from zero.
         index: usize,
-        /// What it is.
+        /// Kind of the stroke.
         kind: &'static str,
     },
-    /// A stroke was refused.
+    /// The session rejected a stroke.
     #[error("stroke.{index}: {source}")]
     Stroke {
-        /// Its number, from zero.
+        /// Index of the stroke, from zero.
         index: usize,
-        /// Why.
+        /// Reason.
         source: SessionError,
     },
 }
 
-/// A pose as the log writes it: an axis and an angle in degrees.
+/// The key that replays as `pose`: axis and angle in degrees of its rotation.
+///
+/// A key does not represent every quaternion exactly. [`Session::move_to`] therefore moves the tool
+/// to the pose of this key.
 pub(super) fn key(pose: &field::Pose) -> Key {
     let rotation = if pose.rotation.w < 0.0 { -pose.rotation } else { pose.rotation };
     let axis = DVec3::new(rotation.x, rotation.y, rotation.z);
@@ -62,21 +71,47 @@ pub(super) fn key(pose: &field::Pose) -> Key {
 }
 
 impl Session {
-    /// All strokes that are done and not undone, as a recipe: what it gives by [`replay`](crate::replay) or
-    /// [`replay_points`](crate::replay_points) for vertices of the mesh as opened is what they have here, to the bit, as long as no
-    /// lock acts and no step is halved. It asks for the lock if the session has it, so that a replay keeps the volume that the host
-    /// saw. Strokes that undo has forgotten are there, too.
+    /// All strokes that are done and not undone, as a recipe. Strokes that undo has forgotten are
+    /// included.
     ///
-    /// Edits of triangles are not logged: a replay refines by its own rules, and the log fits any other mesh or point set.
+    /// Keys are recorded exactly as they were given to [`move_to_key`](Self::move_to_key). A
+    /// [replay](crate::replay), also of [points](crate::replay_points), moves the vertices of the
+    /// mesh as opened to the same bits as [`positions`](Self::positions), provided that no lock
+    /// acts and no time step is halved. The recipe enables the lock if the session has one, so that
+    /// a replay keeps the volume that the host has seen.
+    ///
+    /// Edits of triangles are not logged: a replay refines by its own rules. The log can be applied
+    /// to any mesh or point set.
+    ///
+    /// The shape of a tool [of the host](SessionTool::from_tool) is recorded as
+    /// [`ToolShape::Host`]. Such a log needs the tool again, and can be replayed only [in a
+    /// session](Self::replay).
+    ///
+    /// ```
+    /// # use std::sync::Arc;
+    /// # use isochore_mesh::{NoProgress, primitives::icosphere};
+    /// # use isochore_sculpt::{Meshes, recipe::{self, Key}, session::{Session, SessionOptions, SessionTool, StrokeOptions}};
+    /// # let shape = recipe::ToolShape::Sphere(recipe::Sphere { radius: 0.2 });
+    /// # let brush = recipe::Tool { shape, support: 0.3, profile: recipe::Profile::Quintic, free_form: 0.0 };
+    /// # let brush = Arc::new(SessionTool::new("brush", brush, &Meshes::new(), &NoProgress)?);
+    /// let mut session = Session::open(icosphere(1.0, 3), SessionOptions::default())?;
+    /// session.begin_stroke(&brush, StrokeOptions::default())?;
+    /// session.move_to_key(&Key { at: [0.0, 0.0, 1.0], rotate: [0.0, 0.0, 1.0, 0.0] }, 0.0)?;
+    /// session.move_to_key(&Key { at: [0.0, 0.0, 1.1], rotate: [0.0, 0.0, 1.0, 30.0] }, 0.1)?;
+    /// session.end_stroke()?;
+    /// let log = session.log();
+    /// assert_eq!(log.strokes.len(), 1);
+    /// assert!(log.to_toml().contains("30.0"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn log(&self) -> Recipe {
         let mut tools: BTreeMap<String, Arc<SessionTool>> = BTreeMap::new();
         let mut strokes = Vec::new();
         for stroke in self.logged() {
-            let is_same = |known: &SessionTool| known.description() == stroke.tool.description();
-            // Another tool of the same name gets a number.
+            // A different tool of the same name gets a number.
             let mut name = stroke.tool.name().to_owned();
             let mut number = 2;
-            while tools.get(&name).is_some_and(|known| !is_same(known)) {
+            while tools.get(&name).is_some_and(|known| !known.has_same_entry(&stroke.tool)) {
                 name = format!("{} {number}", stroke.tool.name());
                 number += 1;
             }
@@ -97,15 +132,16 @@ impl Session {
         }
     }
 
-    /// Makes the strokes of `recipe`, all of which must be moves, one after the other as if a host made them: each a stroke that can
-    /// be undone. Its target, mask, time step and refinement play no part; those of the session do.
+    /// Performs the strokes of `recipe`, all of which must be moves. Each becomes a stroke that can
+    /// be undone. The target, mask, time step and refinement of the recipe are ignored; the
+    /// session's own are used.
     ///
     /// # Errors
-    /// [`SessionReplayError`]. The strokes before the one named were made.
+    /// [`SessionReplayError`]. The strokes before the failing one have been performed.
     pub fn replay(
         &mut self,
         recipe: &Recipe,
-        meshes: &Meshes,
+        supplies: &Supplies,
         options: &StrokeOptions,
         monitor: &dyn Monitor,
     ) -> Result<Vec<StrokeReceipt>, SessionReplayError> {
@@ -120,15 +156,14 @@ impl Session {
             let tool = match tools.get(name) {
                 Some(tool) => Arc::clone(tool),
                 None => {
-                    let tool = SessionTool::new(name, recipe.tools[name].clone(), meshes, monitor)
-                        .map_err(SceneError::from)?;
+                    let tool = tool_of(recipe, name, supplies, monitor)?;
                     Arc::clone(tools.entry(name).or_insert(Arc::new(tool)))
                 }
             };
-            let made = self.replay_move(&tool, motion, options, monitor);
-            receipts.push(made.map_err(|error| match error {
-                Failure::Cancelled(cancelled) => SessionReplayError::Recipe(SceneError::Cancelled(cancelled)),
-                Failure::Session(source) => SessionReplayError::Stroke { index, source },
+            let receipt = self.replay_move(&tool, motion, options, monitor);
+            receipts.push(receipt.map_err(|error| match error {
+                MoveFailure::Cancelled(cancelled) => SessionReplayError::Recipe(SceneError::Cancelled(cancelled)),
+                MoveFailure::Session(source) => SessionReplayError::Stroke { index, source },
             })?);
         }
         Ok(receipts)
@@ -140,13 +175,13 @@ impl Session {
         motion: &Move,
         options: &StrokeOptions,
         monitor: &dyn Monitor,
-    ) -> Result<StrokeReceipt, Failure> {
+    ) -> Result<StrokeReceipt, MoveFailure> {
         self.begin_stroke(tool, options.clone())?;
         for (index, key) in motion.keys.iter().enumerate() {
-            let done = monitor.check("replay", index as f64 / motion.keys.len() as f64).map_err(Failure::Cancelled);
-            // The key itself is logged again, not what a way through poses would make of it.
-            let done = done.and_then(|()| self.move_to_key(key.clone(), index as f64).map_err(Failure::Session));
-            if let Err(error) = done {
+            let moved =
+                monitor.check("replay", index as f64 / motion.keys.len() as f64).map_err(MoveFailure::Cancelled);
+            let moved = moved.and_then(|()| self.move_to_key(key, index as f64).map_err(MoveFailure::Session));
+            if let Err(error) = moved {
                 self.cancel_stroke()?;
                 return Err(error);
             }
@@ -155,12 +190,29 @@ impl Session {
     }
 }
 
-enum Failure {
-    Cancelled(isochore_mesh::Cancelled),
+/// The tool `name` of a valid recipe: supplied by the host, or built from its description.
+fn tool_of(
+    recipe: &Recipe,
+    name: &str,
+    supplies: &Supplies,
+    monitor: &dyn Monitor,
+) -> Result<SessionTool, SessionReplayError> {
+    let description = &recipe.tools[name];
+    if !matches!(description.shape, ToolShape::Host(_)) {
+        let tool = SessionTool::new(name, description.clone(), &supplies.meshes, monitor);
+        return Ok(tool.map_err(SceneError::from)?);
+    }
+    let tool = supplies.tools.get(name).ok_or_else(|| SessionReplayError::MissingTool { name: name.to_owned() })?;
+    Ok(SessionTool::from_tool(name, Arc::clone(tool)))
+}
+
+/// Reason why a replayed move was abandoned.
+enum MoveFailure {
+    Cancelled(Cancelled),
     Session(SessionError),
 }
 
-impl From<SessionError> for Failure {
+impl From<SessionError> for MoveFailure {
     fn from(error: SessionError) -> Self {
         Self::Session(error)
     }

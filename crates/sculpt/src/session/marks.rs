@@ -1,23 +1,23 @@
-//! Sets of indices that take time in proportion to what is in them, and give it back in order.
+//! Index sets whose operations take time proportional to their content.
 
 /// A set of indices.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Marks {
-    /// One bit an index.
+    /// One bit per index.
     words: Vec<u64>,
-    /// Words that are not zero.
+    /// Nonzero words.
     used: Vec<u32>,
 }
 
 impl Marks {
-    /// Forgets all.
+    /// Removes all indices.
     pub(super) fn clear(&mut self) {
         for word in self.used.drain(..) {
             self.words[word as usize] = 0;
         }
     }
 
-    /// Makes room for indices below `count`, and forgets none.
+    /// Extends the capacity to indices below `count`. Keeps the content.
     pub(super) fn resize(&mut self, count: usize) {
         let words = count.div_ceil(64);
         if self.words.len() < words {
@@ -25,7 +25,7 @@ impl Marks {
         }
     }
 
-    /// Takes `index` in; whether it was not there.
+    /// Adds `index`. Returns whether it is new.
     #[inline]
     pub(super) fn insert(&mut self, index: u32) -> bool {
         let word = &mut self.words[index as usize / 64];
@@ -38,20 +38,20 @@ impl Marks {
         is_new
     }
 
-    /// Takes all of `indices` in.
+    /// Adds all of `indices`.
     pub(super) fn extend(&mut self, indices: impl IntoIterator<Item = u32>) {
         for index in indices {
             self.insert(index);
         }
     }
 
-    /// Whether `index` is there.
+    /// Whether the set contains `index`.
     #[inline]
     pub(super) fn contains(&self, index: u32) -> bool {
         self.words.get(index as usize / 64).is_some_and(|word| word >> (index % 64) & 1 == 1)
     }
 
-    /// All indices in ascending order. They are there until the set is [cleared](Self::clear).
+    /// All indices in ascending order. Does not [clear](Self::clear) the set.
     pub(super) fn sorted(&mut self) -> Vec<u32> {
         self.used.sort_unstable();
         let mut indices = Vec::with_capacity(8 * self.used.len());
@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn indices_come_back_once_and_in_order() {
+    fn returns_each_index_once_in_ascending_order() {
         let mut marks = Marks::default();
         marks.resize(1000);
         assert!([999, 3, 64, 63, 500].into_iter().all(|index| marks.insert(index)));

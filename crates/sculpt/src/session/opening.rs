@@ -1,4 +1,4 @@
-//! From a mesh with attributes on corners to a surface with render vertices.
+//! Conversion of a mesh with attributes at corners to a surface with render vertices.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use super::{
 };
 
 impl Surface {
-    /// The surface of `mesh`, as opened.
+    /// Builds the surface of `mesh`.
     pub(super) fn open(mesh: Arc<TriMesh>, weights: NormalWeights) -> Result<Self, OpenError> {
         mesh.check_valid()?;
         check_attributes(&mesh)?;
@@ -35,16 +35,17 @@ fn check_attributes(mesh: &TriMesh) -> Result<(), OpenError> {
         ("skin influences", mesh.vertex.skin.len(), vertices, true),
         ("triangle materials", mesh.triangle_materials.len(), triangles, true),
     ];
-    for (attribute, found, expected, may_be_absent) in uvs.chain(others) {
-        if found != expected && !(may_be_absent && found == 0) {
+    for (attribute, found, expected, is_optional) in uvs.chain(others) {
+        if found != expected && !(is_optional && found == 0) {
             return Err(OpenError::AttributeCount { attribute, found, expected });
         }
     }
     Ok(())
 }
 
-/// Cosine of the angle up to which two shading normals are one, a fortieth of a degree. Larger levels creases that were set by hand;
-/// smaller breaks the shading where a file rounds its normals, to four digits or the last bit.
+/// Cosine of the angle up to which two shading normals count as equal, a fortieth of a degree. A
+/// larger angle smooths creases that were set by hand; a smaller angle breaks the shading of files
+/// that round their normals, to four digits or the last bit.
 const SAME_NORMAL: f64 = 1.0 - 1e-7;
 
 fn is_same_normal(one: Vec3, other: Vec3) -> bool {
@@ -52,7 +53,8 @@ fn is_same_normal(one: Vec3, other: Vec3) -> bool {
     one == other || a.dot(b) > SAME_NORMAL * a.length() * b.length()
 }
 
-/// Whether two corners of the mesh, by triangle and side, carry the same attributes: normals but for rounding, others to the bit.
+/// Whether two corners of the mesh, given as triangle and side, have the same attributes: normals
+/// up to rounding, others bit for bit.
 pub(super) fn is_same_corner(mesh: &TriMesh, [one, other]: [(u32, usize); 2]) -> bool {
     let [(a, i), (b, j)] = [one, other].map(|(triangle, side)| (triangle as usize, side));
     let corner = &mesh.corner;
@@ -62,11 +64,12 @@ pub(super) fn is_same_corner(mesh: &TriMesh, [one, other]: [(u32, usize); 2]) ->
             || corner.colors[a][i].to_array().map(f64::to_bits) == corner.colors[b][j].to_array().map(f64::to_bits))
 }
 
-/// One render vertex for each different corner at a vertex: the first of each vertex has the vertex' own number, the others follow.
+/// One render vertex for each distinct corner at a vertex. The first one of a vertex has the number
+/// of the vertex; the others follow.
 fn render_vertices(mesh: &TriMesh) -> (Vec<[u32; 3]>, Vec<RenderVertex>) {
     let mut render: Vec<RenderVertex> =
         (0..mesh.positions.len() as u32).map(|vertex| RenderVertex { vertex, origin: None }).collect();
-    // By render vertex the next one of the same vertex.
+    // Linked lists: for each render vertex, the next one of the same vertex.
     let mut following = vec![NONE; render.len()];
     let mut corner = |triangle: u32, side: usize| {
         let vertex = mesh.triangles[triangle as usize][side];
@@ -100,7 +103,7 @@ fn render_vertices(mesh: &TriMesh) -> (Vec<[u32; 3]>, Vec<RenderVertex>) {
     (corners, render)
 }
 
-/// The edges of a triangle across which the shading normals of the mesh break, as bits.
+/// The edges of a triangle across which the shading normals of the mesh are discontinuous, as bits.
 fn hard_edges(mesh: &TriMesh, topology: &EditMesh, triangle: u32) -> u8 {
     let normals = &mesh.corner.normals;
     if normals.is_empty() {

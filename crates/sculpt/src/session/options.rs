@@ -1,26 +1,45 @@
-//! What a host chooses.
+//! Options of sessions and strokes.
 
 use glam::DVec3;
 
 use crate::recipe::{self, Target};
 
-/// How a session works, for all its strokes.
+/// Options of a session, which apply to all its strokes.
+///
+/// ```
+/// use isochore_mesh::primitives::icosphere;
+/// use isochore_sculpt::{recipe::{Mask, Pin}, session::{Session, SessionOptions}};
+///
+/// // Hold the north pole.
+/// let pin = Pin { center: [0.0, 0.0, 1.0], radius: 0.2, support: 0.1 };
+/// let mask = Mask { pins: vec![pin], ..Mask::default() };
+/// let options = SessionOptions { mask, undo_bytes: 64 << 20, ..SessionOptions::default() };
+/// assert!(Session::open(icosphere(1.0, 3), options).is_ok());
+///
+/// let options = SessionOptions { step: 2.0, ..SessionOptions::default() };
+/// let error = Session::open(icosphere(1.0, 3), options).unwrap_err();
+/// assert!(error.to_string().contains("integrate.step"));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SessionOptions {
-    /// What the log says the mesh is: by default the mesh file `target`. The mesh that the session is opened on is this target as
-    /// it stands in the world.
+    /// Target that the log names: by default the mesh file `target`. The session must be opened on
+    /// this target as placed in the world.
     pub target: Target,
-    /// What holds all strokes back, in the coordinates of the mesh as opened. Edges that it holds are not edited either.
+    /// Mask of all strokes, in the coordinates of the mesh as opened. Edges that it holds are not
+    /// edited.
     pub mask: recipe::Mask,
-    /// Travel of the fastest point of the tool's surface in one time step, as a share of the support or of half the tool's shortest
-    /// extent, whichever is less; at most 1. The recipe's `integrate.step`.
+    /// Travel of the fastest point of the tool's surface in one time step, as a fraction of the
+    /// support or of half the tool's shortest extent, whichever is less; above 0 and at most 1. The
+    /// recipe's `integrate.step`.
     pub step: f64,
-    /// Bytes that undo and redo may hold, whatever is undone. The oldest strokes are forgotten first; the last one is always kept.
+    /// Memory for undo and redo together, in bytes. The oldest strokes are forgotten first; the
+    /// last stroke is always kept.
     pub undo_bytes: usize,
-    /// Whether a small displacement of what a stroke has moved gives back the volume of the mesh as opened when the stroke ends. It is
-    /// kept apart from the flow, and an open surface has no volume to give back.
+    /// Whether the end of each stroke restores the volume of the mesh as opened by a small
+    /// displacement of the vertices that the stroke has moved. The displacement is stored
+    /// separately from the flow. It has no effect on an open surface, which has no volume.
     pub lock: bool,
-    /// How triangles are weighted in the normals of the vertices that they meet in.
+    /// Weights of the triangles in vertex normals.
     pub normals: NormalWeights,
 }
 
@@ -37,20 +56,31 @@ impl Default for SessionOptions {
     }
 }
 
-/// How triangles are weighted in a vertex normal.
+/// Weights of the triangles in a vertex normal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum NormalWeights {
-    /// By their areas: quick, and smooth where triangles are of one size.
+    /// Area: fast, and smooth if the triangles have similar sizes.
     #[default]
     Area,
-    /// By their angles at the vertex, which does not depend on how the surface is cut into triangles.
+    /// Angle at the vertex: independent of how the surface is cut into triangles.
     Angle,
 }
 
-/// How one stroke works.
+/// Options of one stroke.
+///
+/// ```
+/// use isochore_sculpt::session::{InteractiveRefinement, StrokeOptions};
+///
+/// // Split edges longer than 0.05 and never collapse.
+/// let refine = InteractiveRefinement { longest: Some(0.05), collapse: 0.0, ..InteractiveRefinement::default() };
+/// let finer = StrokeOptions { refine: Some(refine) };
+/// // Keep all triangles.
+/// let unrefined = StrokeOptions { refine: None };
+/// assert_ne!(finer, unrefined);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct StrokeOptions {
-    /// What becomes of triangles in the tool's reach; none to keep them all.
+    /// Refinement of the triangles in the tool's reach. `None` keeps all triangles.
     pub refine: Option<InteractiveRefinement>,
 }
 
@@ -60,23 +90,26 @@ impl Default for StrokeOptions {
     }
 }
 
-/// When edges in the tool's reach are split, collapsed and flipped during a stroke.
+/// Rules by which a stroke splits, collapses and flips edges in the tool's reach.
 ///
-/// A split never moves the surface from where the flow takes it. A collapse or a flip changes the volume a little; how much is
-/// booked apart, in [`StrokeVolume::remeshing`](super::StrokeVolume::remeshing). No edit crosses a seam, a hard edge, a border
-/// between materials or the end of the surface; such edges are split at most.
+/// A split places the new vertex exactly where the flow moves it. A collapse or a flip changes the
+/// volume slightly; the change is reported separately in
+/// [`StrokeVolume::remeshing`](super::StrokeVolume::remeshing). Seams, hard edges, borders between
+/// materials and the boundary may be split, but are never collapsed or flipped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InteractiveRefinement {
-    /// Edges longer than this are split, model units; by default an eighth of the length over which the tool's field changes.
+    /// Length above which edges are split, model units. By default an eighth of the tool's
+    /// [feature size](isochore_field::Tool::feature_size).
     pub longest: Option<f64>,
-    /// Edges shorter than this share of `longest` are collapsed, once the stroke has squeezed them to less than half; zero to
-    /// collapse none. Collapsed vertices are gone, also where they are those of the mesh as opened.
+    /// Edges shorter than this fraction of `longest`, from 0 to 0.4, are collapsed if the stroke
+    /// has squeezed them to less than half their length. Zero collapses none. Vertices of the mesh
+    /// as opened may be removed too.
     pub collapse: f64,
-    /// Whether badly shaped pairs of triangles that the stroke has moved exchange their common edge.
+    /// Whether to flip edges between badly shaped triangles that the stroke has moved.
     pub flip: bool,
-    /// No split goes beyond this number of triangles.
+    /// Maximum number of triangles; splits stop before they exceed it.
     pub max_triangles: usize,
-    /// Balls in the world, by center and radius, in which the triangles stay as they are.
+    /// Balls in the world, as center and radius, in which no edge is edited.
     pub keep: Vec<(DVec3, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! Where inserted vertices come from on the mesh as opened.
+//! Origins of inserted vertices on the mesh as opened.
 
 use glam::DVec3;
 use isochore_mesh::{Origin, TriMesh};
@@ -7,8 +7,9 @@ use super::opening::is_same_corner;
 
 /// The point of the mesh halfway between two of its points.
 ///
-/// Within one triangle that is the mean of their coordinates. Points of two triangles, which flips and collapses bring together,
-/// have their middle off the mesh: then the nearest point of the triangles in question takes its place.
+/// Within one triangle, it is the mean of their barycentric coordinates. After flips and collapses,
+/// the ends may be in different triangles, and their midpoint is off the mesh. Then the result is
+/// the nearest point in the triangle `parent` and in those of the ends.
 pub(super) fn midpoint_origin(mesh: &TriMesh, ends: [Origin; 2], parent: u32) -> Origin {
     let candidates = [parent, ends[0].triangle, ends[1].triangle];
     for triangle in candidates {
@@ -29,8 +30,8 @@ pub(super) fn midpoint_origin(mesh: &TriMesh, ends: [Origin; 2], parent: u32) ->
         .map_or(ends[0], |(_, origin)| origin)
 }
 
-/// The coordinates of `origin` in another triangle that it belongs to as well, on an edge or in a corner, on the same side of all
-/// seams.
+/// Barycentric coordinates of `origin` in another triangle that contains it on an edge or at a
+/// corner. `None` if that triangle does not contain it or is across a seam.
 fn weights_in(mesh: &TriMesh, origin: &Origin, triangle: u32) -> Option<DVec3> {
     if origin.triangle == triangle {
         return Some(origin.weights);
@@ -48,7 +49,7 @@ fn weights_in(mesh: &TriMesh, origin: &Origin, triangle: u32) -> Option<DVec3> {
     Some(DVec3::from_array(weights))
 }
 
-/// Barycentric coordinates of the point of a triangle nearest to `point`, up to rounding.
+/// Barycentric coordinates of the point of the triangle nearest to `point`, up to rounding.
 pub(super) fn nearest_weights(point: DVec3, corners: &[DVec3; 3]) -> DVec3 {
     let [a, b, c] = *corners;
     let normal = (b - a).cross(c - a);
@@ -58,7 +59,7 @@ pub(super) fn nearest_weights(point: DVec3, corners: &[DVec3; 3]) -> DVec3 {
         let sum: f64 = spans.iter().sum();
         return DVec3::from_array(spans) / sum;
     }
-    // Outside: on the nearest edge.
+    // Outside: the nearest point is on an edge.
     let edges = [0, 1, 2].map(|side| {
         let (from, to) = (corners[side], corners[(side + 1) % 3]);
         let along = (point - from).dot(to - from) / (to - from).length_squared();
@@ -84,19 +85,20 @@ mod tests {
     }
 
     #[test]
-    fn middles_lie_in_the_triangle_that_holds_both_ends() {
+    fn finds_midpoints_in_the_triangle_of_both_ends() {
         let mesh = pair();
         let at = |triangle, weights: [f64; 3]| Origin { triangle, weights: weights.into() };
-        // From the middle of the common edge, told in the first triangle, to a corner of the second.
+        // From the middle of the common edge, in coordinates of the first triangle, to a corner of
+        // the second.
         let found = midpoint_origin(&mesh, [at(0, [0.0, 0.5, 0.5]), at(1, [0.0, 0.0, 1.0])], 1);
         assert_eq!(found, at(1, [0.25, 0.25, 0.5]));
-        // Between the far corners: off no triangle here, in the middle of the common edge.
+        // Between the far corners: the middle of the common edge.
         let found = midpoint_origin(&mesh, [at(0, [1.0, 0.0, 0.0]), at(1, [0.0, 0.0, 1.0])], 0);
         assert!(mesh.point_at(&found).distance(dvec3(0.5, 0.5, 0.0)) < 1e-15);
     }
 
     #[test]
-    fn a_seam_is_not_crossed() {
+    fn does_not_cross_a_seam() {
         let mut mesh = pair();
         let uv = |side: f32| [vec2(side, 0.0), vec2(side, 1.0), Vec2::ONE];
         mesh.corner.uvs = vec![vec![uv(0.0), uv(5.0)]];

@@ -1,8 +1,8 @@
-//! What moves, strokes, undo and redo did.
+//! Receipts of moves and strokes, and the state of undo and redo.
 
 use std::fmt;
 
-/// What one [`move_to`](super::Session::move_to) did.
+/// Result of one [`move_to`](super::Session::move_to).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MoveReceipt {
     /// Vertices that moved.
@@ -15,7 +15,8 @@ pub struct MoveReceipt {
     pub flipped_edges: usize,
     /// Whether the limit on triangles kept edges from being split.
     pub is_limited: bool,
-    /// Edges that stay too long because the stroke has stirred the surface there too much for a split to help.
+    /// Edges that stay too long because the stroke stirs the surface so much that splits do not
+    /// help.
     pub refused_splits: usize,
     /// Evaluations of the field.
     pub evaluations: u64,
@@ -23,38 +24,38 @@ pub struct MoveReceipt {
     pub seconds: MoveSeconds,
 }
 
-/// Wall time of the stages of a move, in seconds; zero where there is no clock.
+/// Wall time of the stages of a move, in seconds; zero on platforms without a clock.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MoveSeconds {
-    /// Finding what the tool can touch.
+    /// Selecting what the tool may touch.
     pub select: f64,
-    /// Carrying vertices along the flow.
+    /// Advecting vertices along the flow.
     pub flow: f64,
     /// Splits, collapses and flips.
     pub refine: f64,
-    /// Letting the index over the triangles follow.
+    /// Updating the index over the triangles.
     pub index: f64,
-    /// Normals and the rest of the buffers.
+    /// Updating normals and the other buffers.
     pub buffers: f64,
 }
 
 impl MoveSeconds {
-    /// All stages together.
+    /// Sum of all stages.
     pub fn total(&self) -> f64 {
         self.select + self.flow + self.refine + self.index + self.buffers
     }
 }
 
-/// What one stroke did.
+/// Result of one stroke.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StrokeReceipt {
-    /// Moves that it was made of, the first pose not counted.
+    /// Number of moves. The first pose does not count.
     pub moves: usize,
-    /// Time between its first and last pose, as the host told it.
+    /// Time from the first to the last pose by the host's clock, seconds.
     pub duration: f64,
-    /// Vertices there before that it moved or removed.
+    /// Existing vertices that the stroke moved or removed.
     pub touched_vertices: usize,
-    /// Vertices that splits inserted; some of them may be removed again.
+    /// Vertices that splits inserted, including those that were removed again.
     pub inserted_vertices: usize,
     /// Vertices that collapses removed.
     pub removed_vertices: usize,
@@ -62,38 +63,56 @@ pub struct StrokeReceipt {
     pub flipped_edges: usize,
     /// Whether the limit on triangles kept edges from being split.
     pub is_limited: bool,
-    /// The most edges in any move that stayed too long because the stroke has stirred the surface there too much for a split to help.
+    /// Maximum over all moves of [`MoveReceipt::refused_splits`].
     pub refused_splits: usize,
-    /// Evaluations of the fields.
+    /// Evaluations of the field.
     pub evaluations: u64,
-    /// What became of the volume; none where the surface is open.
+    /// Change of the volume. `None` if the surface is open.
     pub volume: Option<StrokeVolume>,
-    /// Longest displacement by the lock of this stroke, model units; none where it was skipped.
+    /// Longest displacement by the lock of this stroke, model units. `None` if the lock was
+    /// skipped.
     pub lock_max_shift: Option<f64>,
-    /// Why the lock was skipped; none where it acted.
+    /// Reason why the lock was skipped. `None` if it acted.
     pub lock_skipped: Option<LockSkipped>,
     /// Wall time of all moves by stage.
     pub seconds: MoveSeconds,
-    /// Bytes that undo holds for this stroke, with what it will need for making it again.
+    /// Bytes that undo holds for this stroke, including those that redo will need.
     pub undo_bytes: usize,
-    /// Strokes that undo forgot, oldest first, to make room for this one.
+    /// Number of oldest strokes that undo has forgotten to stay within its memory.
     pub forgotten_strokes: usize,
 }
 
-/// Why a stroke ended without its lock.
+impl StrokeReceipt {
+    /// Adds the result of a move, except the number of moves.
+    pub(super) fn add(&mut self, receipt: &MoveReceipt) {
+        self.inserted_vertices += receipt.inserted_vertices;
+        self.removed_vertices += receipt.removed_vertices;
+        self.flipped_edges += receipt.flipped_edges;
+        self.is_limited |= receipt.is_limited;
+        self.refused_splits = self.refused_splits.max(receipt.refused_splits);
+        self.evaluations += receipt.evaluations;
+        self.seconds.select += receipt.seconds.select;
+        self.seconds.flow += receipt.seconds.flow;
+        self.seconds.refine += receipt.seconds.refine;
+        self.seconds.index += receipt.seconds.index;
+        self.seconds.buffers += receipt.seconds.buffers;
+    }
+}
+
+/// Reasons for a stroke to end without the lock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LockSkipped {
-    /// The session locks no stroke.
+    /// The session has no lock.
     Off,
     /// The surface is open and has no volume.
     NeedsClosed,
-    /// The stroke has moved nothing that the volume depends on, or too little for a displacement of that to give it back. What is
-    /// missing is left for the lock of the next stroke.
+    /// The stroke has moved nothing that the volume depends on, or too little to restore the
+    /// volume. The lock of the next stroke corrects the remaining difference.
     NoHold,
 }
 
 impl LockSkipped {
-    /// The name that programs go by: `off`, `needs_closed`, `no_hold`.
+    /// Identifier for programs: `off`, `needs_closed` or `no_hold`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Off => "off",
@@ -106,50 +125,54 @@ impl LockSkipped {
 impl fmt::Display for LockSkipped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Off => "the lock was skipped: the session has none",
+            Self::Off => "the lock was skipped: the session has no lock",
             Self::NeedsClosed => "the lock was skipped: the mesh is open and has no volume",
             Self::NoHold => "the lock was skipped: nothing moved that the volume depends on",
         })
     }
 }
 
-/// Signed changes of the volume inside the flat triangles by one stroke, cubic model units. Their sum is the whole change.
+/// Signed changes of the volume inside the flat triangles by one stroke, cubic model units. The
+/// total is the sum of the three parts.
 ///
-/// The flow itself keeps volumes up to its time step. `flow` and `splits` are what flat triangles make of it, and tend to cancel:
-/// flat triangles cut a curved image short, and a vertex inserted where the flow carries it gives some of that back.
+/// The flow itself preserves volume up to the error of its time step. `flow` and `splits` are
+/// caused by flat triangles and tend to cancel: flat triangles cut a curved image short, and a
+/// vertex inserted on the image corrects part of this.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StrokeVolume {
-    /// By moving vertices: the error of the time step and the facet error.
+    /// Change by moving vertices: the error of the time step and the facet error.
     pub flow: f64,
-    /// By inserting vertices on the image of the surface.
+    /// Change by inserting vertices on the image of the surface.
     pub splits: f64,
-    /// By collapses and flips, which the flow knows nothing of.
+    /// Change by collapses and flips, which are not part of the flow.
     pub remeshing: f64,
-    /// Bound on the rounding in these numbers.
+    /// Bound on the rounding error of these numbers.
     pub rounding: f64,
 }
 
 impl StrokeVolume {
-    /// The bare change: what the method itself gives, remeshing apart.
+    /// Change by the method itself, without remeshing.
     pub fn bare(&self) -> f64 {
         self.flow + self.splits
     }
 
-    /// The whole change.
+    /// Total change.
     pub fn total(&self) -> f64 {
         self.flow + self.splits + self.remeshing
     }
 }
 
-/// What can be undone and redone.
+/// State of undo and redo.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct History {
     /// Strokes that can be undone.
     pub undoable: usize,
     /// Strokes that can be redone.
     pub redoable: usize,
-    /// Strokes that can no longer be undone, because the byte budget made undo forget them. The log still has them.
+    /// Strokes that can no longer be undone because undo has forgotten them. The log still contains
+    /// them.
     pub forgotten: usize,
-    /// Bytes held, with what redo will need for strokes that are not undone yet: undo and redo change nothing in it.
+    /// Bytes in use, including those that redo will need for strokes that are not undone yet. Undo
+    /// and redo do not change this number.
     pub bytes: usize,
 }

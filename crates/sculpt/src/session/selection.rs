@@ -1,22 +1,24 @@
-//! What a move touches: sets of triangles and vertices, in ascending order so that no bit depends on how they were found.
+//! Selection of the triangles and vertices that a move touches.
+//!
+//! Selections are sorted, so that results do not depend on the order in which elements are found.
 
 use rayon::prelude::*;
 
 use super::{stroke::Segment, surface::Surface};
 
-/// Triangles that one task looks at.
+/// Elements that one task examines. Larger leaves threads idle; smaller spends time on scheduling.
 const CHUNK: usize = 4096;
 
 impl Surface {
-    /// All triangles that a segment of a way may touch, and some that it does not: which, and in what order, depends on the history
-    /// of the tree, so no result may.
+    /// All triangles that a segment may touch, and some that it does not. Their selection and order
+    /// depend on the history of the tree, so results must not depend on either.
     pub(super) fn triangles_near(&self, segment: &Segment) -> Vec<u32> {
         let mut near = Vec::new();
         self.tree.visit(|bounds| segment.may_touch_within(bounds), |triangle| near.push(triangle));
         near
     }
 
-    /// Those of the triangles `near`, in which all at the vertices `moved` are, that have one of these vertices, and `others`.
+    /// The triangles at the vertices `moved`, all of which must be in `near`.
     pub(super) fn triangles_at(&mut self, moved: &[u32], near: &[u32]) -> Vec<u32> {
         let vertices = &mut self.vertex_marks;
         vertices.clear();
@@ -36,7 +38,7 @@ impl Surface {
         marks.sorted()
     }
 
-    /// The vertices of those of `triangles` that are there.
+    /// The vertices of `triangles`, without removed triangles.
     pub(super) fn vertices_of(&mut self, triangles: &[u32]) -> Vec<u32> {
         let marks = &mut self.vertex_marks;
         marks.clear();

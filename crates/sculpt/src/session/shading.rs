@@ -1,4 +1,4 @@
-//! Positions and normals of render vertices, made anew only where the surface has changed.
+//! Positions and normals of render vertices, recomputed only at vertices that have changed.
 
 use glam::DVec3;
 use isochore_mesh::{NONE, previous_half_edge};
@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use super::{NormalWeights, surface::Surface};
 
-/// Vertices that one task makes normals for. Larger leaves threads idle; smaller spends time on handing out tasks.
+/// Vertices that one task shades. Larger leaves threads idle; smaller spends time on scheduling.
 const CHUNK: usize = 1024;
 
-/// What the buffers hold of a render vertex.
+/// Buffer entries of a render vertex.
 struct Shaded {
     render: u32,
     position: [f32; 3],
@@ -17,7 +17,7 @@ struct Shaded {
 }
 
 impl Surface {
-    /// Makes the positions and normals anew of all render vertices of `vertices`.
+    /// Recomputes positions and normals of all render vertices of `vertices`.
     pub(super) fn shade(&mut self, vertices: &[u32]) {
         let shaded: Vec<Vec<Shaded>> = vertices
             .par_chunks(CHUNK)
@@ -36,8 +36,8 @@ impl Surface {
         }
     }
 
-    /// Appends the render vertices of `vertex`. Triangles between two hard edges share a normal; across a mere seam of attributes
-    /// the shading is smooth.
+    /// Appends the render vertices of `vertex`. Triangles between two hard edges have a common
+    /// normal; shading is smooth across other seams.
     fn shade_vertex(&self, vertex: u32, fan: &mut Vec<u32>, shaded: &mut Vec<Shaded>) {
         let first = self.topology.outgoing(vertex);
         if first == NONE {
@@ -46,7 +46,8 @@ impl Surface {
         let position = self.shown(vertex).as_vec3().to_array();
         fan.clear();
         fan.extend(self.topology.fan(vertex));
-        // Turned so that a hard edge, if there is one, comes first. Where the surface ends, the fan begins at the end.
+        // A fan of an interior vertex is rotated so that it begins at a hard edge. A fan of a
+        // boundary vertex begins at the boundary.
         if self.has_hard_edges && !self.topology.is_boundary(vertex) {
             let hard = fan.iter().position(|&half_edge| self.is_hard(half_edge));
             fan.rotate_left(hard.unwrap_or(0));
@@ -69,12 +70,13 @@ impl Surface {
         }
     }
 
-    /// Whether shading breaks across the edge of a half-edge.
+    /// Whether shading is discontinuous across the edge of a half-edge.
     pub(super) fn is_hard(&self, half_edge: u32) -> bool {
         self.has_hard_edges && self.patches.items()[half_edge as usize / 3].hard >> (half_edge % 3) & 1 == 1
     }
 
-    /// The normal of a triangle, weighted for the vertex that a half-edge of it starts from.
+    /// The normal of the triangle of a half-edge, weighted for the vertex at the start of the
+    /// half-edge.
     #[inline]
     fn weighted_normal(&self, half_edge: u32) -> DVec3 {
         let triangle = &self.topology.triangles()[half_edge as usize / 3];
@@ -84,9 +86,9 @@ impl Surface {
             NormalWeights::Area => normal,
             NormalWeights::Angle => {
                 let at = |half_edge: u32| [a, b, c][half_edge as usize % 3];
-                let here = at(half_edge);
-                let behind = at(previous_half_edge(half_edge)) - here;
-                let ahead = at(isochore_mesh::next_half_edge(half_edge)) - here;
+                let corner = at(half_edge);
+                let behind = at(previous_half_edge(half_edge)) - corner;
+                let ahead = at(isochore_mesh::next_half_edge(half_edge)) - corner;
                 normal.normalize_or_zero() * libm::atan2(ahead.cross(behind).length(), ahead.dot(behind))
             }
         }

@@ -1,25 +1,26 @@
-//! Volumes, summed over what a stroke has touched and nothing else.
+//! Volume changes, summed over the triangles that a stroke has touched.
 
 use glam::DVec3;
 use isochore_mesh::CompensatedSum;
 
 use super::{StrokeVolume, stroke::ActiveStroke, surface::Surface};
 
-/// Relative rounding of one signed volume of six products of three differences, and of taking it up into a sum, as a multiple of
-/// the product of the three lengths. A dozen roundings are made; fewer here, and honest sums would break their bound.
+/// Relative rounding error of one signed volume (six products of three differences) and of adding
+/// it to a sum, as a multiple of the product of the three lengths. About a dozen roundings occur.
+/// Smaller, and correct sums would exceed their bound; larger makes the bound less sharp.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Volume that a stroke has moved through the surface, cubic model units.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MovedVolume {
-    /// Swept by parts of the surface that moved outward.
+    /// Volume swept by parts of the surface that moved outward.
     pub outward: f64,
-    /// Swept by parts of the surface that moved inward.
+    /// Volume swept by parts of the surface that moved inward.
     pub inward: f64,
 }
 
 impl ActiveStroke {
-    /// Every triangle that the stroke moved or edited.
+    /// All triangles that the stroke moved or edited, each once.
     pub(super) fn touched<'a>(&'a self, surface: &'a Surface) -> impl Iterator<Item = u32> + 'a {
         let journal = surface.topology.journal();
         let added = journal.original_len() as u32..journal.items().len() as u32;
@@ -31,10 +32,11 @@ impl ActiveStroke {
             .chain(added.filter(move |&triangle| !is_moved(triangle)))
     }
 
-    /// What became of the volume so far.
+    /// Change of the volume so far.
     pub(super) fn volume(&self, surface: &Surface) -> StrokeVolume {
         let journal = surface.topology.journal();
-        // Any point does for a closed difference; one that is near keeps rounding small.
+        // Old and new triangles together are closed, so any origin gives the same sum. A near one
+        // keeps rounding small.
         let origin =
             self.touched(surface).find_map(|triangle| surface.corners_of(triangle)).map_or(DVec3::ZERO, |c| c[0]);
         let mut total = CompensatedSum::default();
@@ -56,8 +58,8 @@ impl ActiveStroke {
         StrokeVolume { flow: total.value() - splits - remeshing, splits, remeshing, rounding: ROUNDING * size }
     }
 
-    /// Volume moved so far. Each triangle counts by the mean of its displacement along its mean normal, so that what goes back and
-    /// forth counts by where it is now.
+    /// Volume moved so far: for each triangle, the mean displacement of its corners along its mean
+    /// normal. Motion to and fro counts by the net displacement.
     pub(super) fn moved_volume(&self, surface: &Surface) -> MovedVolume {
         let mut moved = MovedVolume::default();
         for triangle in self.touched(surface) {

@@ -7,7 +7,8 @@ use isochore_sculpt::session::NormalWeights;
 
 use super::*;
 
-/// A ball with texture coordinates that break along a meridian, two materials with a hard edge between them, colors and skin weights.
+/// A ball with a texture seam along a meridian, two materials with a hard edge between them, colors
+/// and skin weights.
 pub(crate) fn painted_ball() -> TriMesh {
     let mut mesh = icosphere(1.0, 3);
     let around = |p: DVec3| libm::atan2(p.y, p.x) / std::f64::consts::TAU + 0.5;
@@ -38,7 +39,7 @@ pub(crate) fn painted_ball() -> TriMesh {
 }
 
 #[test]
-fn render_vertices_follow_their_vertices_and_seams_stay_closed() {
+fn render_vertices_follow_vertices_and_keep_seams_closed() {
     let mut session = open(painted_ball());
     let opened = session.opened().clone();
     let vertices = opened.positions.len();
@@ -66,7 +67,7 @@ fn render_vertices_follow_their_vertices_and_seams_stay_closed() {
             assert!((origin.weights.element_sum() - 1.0).abs() < 1e-15 && origin.weights.min_element() >= 0.0);
             inserted += usize::from(vertex as usize >= vertices);
         }
-        // Texture coordinates nowhere jump from one end of the map to the other within a triangle.
+        // Within a triangle, texture coordinates never jump from one end of the map to the other.
         let us = corners.map(|corner| buffers.uvs[0][corner as usize][0]);
         let spread = us.iter().cloned().fold(0.0, f32::max) - us.iter().cloned().fold(2.0, f32::min);
         let is_polar =
@@ -77,7 +78,7 @@ fn render_vertices_follow_their_vertices_and_seams_stay_closed() {
 }
 
 #[test]
-fn an_exported_mesh_carries_everything() {
+fn export_keeps_all_attributes() {
     let mut session = open(painted_ball());
     for round in 0..8 {
         make(&mut session, &brush(), &refined(0.1), &arc(0.7 * f64::from(round), 7));
@@ -95,7 +96,7 @@ fn an_exported_mesh_carries_everything() {
             assert_eq!(mesh.vertex.colors[index], opened.vertex.colors[vertex as usize]);
         }
     }
-    // The lock gives back the volume of the mesh as opened, to rounding.
+    // The lock restores the volume of the mesh as opened, up to rounding.
     assert!(exported.lock.is_some());
     assert!((mesh.volume() / opened.volume() - 1.0).abs() < 1e-14);
     let unlocked = session.export(false).mesh;
@@ -104,7 +105,7 @@ fn an_exported_mesh_carries_everything() {
 }
 
 #[test]
-fn shading_breaks_at_hard_edges_and_nowhere_else() {
+fn shading_is_discontinuous_only_at_hard_edges() {
     for weights in [NormalWeights::Area, NormalWeights::Angle] {
         let options = SessionOptions { normals: weights, ..SessionOptions::default() };
         let mut session = Session::open(painted_ball(), options).unwrap();
@@ -115,8 +116,8 @@ fn shading_breaks_at_hard_edges_and_nowhere_else() {
             session.begin_stroke(&brush(), options).unwrap();
             arc(0.6 * f64::from(round), 9).iter().for_each(|pose| assert!(session.move_to(pose, 0.0).is_ok()));
             let receipt = session.end_stroke().unwrap();
-            let made = [receipt.inserted_vertices, receipt.removed_vertices, receipt.flipped_edges];
-            (0..3).for_each(|kind| edits[kind] += made[kind]);
+            let counts = [receipt.inserted_vertices, receipt.removed_vertices, receipt.flipped_edges];
+            (0..3).for_each(|kind| edits[kind] += counts[kind]);
         }
         assert!(edits.iter().all(|&count| count > 0), "{edits:?}");
         for _ in 0..3 {
@@ -128,7 +129,8 @@ fn shading_breaks_at_hard_edges_and_nowhere_else() {
     }
 }
 
-/// Each corner must have the mean normal of the triangles at its vertex that have its triangle's material.
+/// Each corner must have the mean normal of the triangles at its vertex that have its triangle's
+/// material.
 fn assert_is_shaded_by_material(session: &Session, weights: NormalWeights) {
     let mesh = session.export(true).mesh;
     let normals = |triangle: usize| {
@@ -153,35 +155,35 @@ fn assert_is_shaded_by_material(session: &Session, weights: NormalWeights) {
     for (corners, (vertices, &side)) in alive.zip(mesh.triangles.iter().zip(&mesh.triangle_materials)) {
         for (&corner, &vertex) in corners.iter().zip(vertices) {
             let normal = DVec3::from_array(session.buffers().normals[corner as usize].map(f64::from));
-            let [here, there] = [side, 1 - side].map(|side| sums[vertex as usize][side as usize].normalize_or_zero());
+            let [own, other] = [side, 1 - side].map(|side| sums[vertex as usize][side as usize].normalize_or_zero());
             // Rounded to f32 once; sums in another order.
-            assert!(normal.distance(here) < 1e-6, "vertex {vertex}: {normal} {here}");
-            broken += usize::from(there != DVec3::ZERO && here.distance(there) > 1e-3);
+            assert!(normal.distance(own) < 1e-6, "vertex {vertex}: {normal} {own}");
+            broken += usize::from(other != DVec3::ZERO && own.distance(other) > 1e-3);
         }
     }
     assert!(broken > 100, "{broken}");
 }
 
 #[test]
-fn rounding_in_normals_makes_no_hard_edges() {
+fn rounding_of_normals_does_not_make_hard_edges() {
     let flat = |error: f32| {
         let mut mesh = box_mesh(DVec3::ONE, [3, 3, 3]);
         let normals = |triangle: usize| {
             let [a, b, c] = mesh.corners(triangle);
             let normal = (b - a).cross(c - a).normalize().as_vec3();
-            [0.0, 1.0, -1.0].map(|share| normal + Vec3::splat(share * error * (triangle % 7) as f32))
+            [0.0, 1.0, -1.0].map(|factor| normal + Vec3::splat(factor * error * (triangle % 7) as f32))
         };
         mesh.corner.normals = (0..mesh.triangles.len()).map(normals).collect();
         open(mesh)
     };
     let [exact, rounded, broken] = [0.0, 1e-7, 1e-2].map(|error| flat(error).buffers().positions.len());
-    // Corners of the grids on six faces, each by itself.
+    // Each of the six faces has its own grid of corners.
     assert_eq!([exact, rounded], [6 * 16; 2]);
     assert!(broken > exact);
 }
 
 #[test]
-fn a_session_that_did_nothing_exports_what_it_opened() {
+fn an_unchanged_session_exports_the_mesh_as_opened() {
     let mut mesh = painted_ball();
     mesh.positions.push(DVec3::splat(3.0));
     mesh.vertex.colors.push(DVec4::ONE);
@@ -195,7 +197,7 @@ fn a_session_that_did_nothing_exports_what_it_opened() {
 }
 
 #[test]
-fn a_vertex_without_triangles_is_carried_too() {
+fn advects_a_vertex_without_triangles() {
     let mut mesh = icosphere(1.0, 3);
     mesh.positions.push(DVec3::new(1.05, 0.1, 0.0));
     let mut session = open(mesh.clone());

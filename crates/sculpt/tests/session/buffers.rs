@@ -2,7 +2,7 @@ use isochore_sculpt::session::{Changes, DirtyRange, NormalWeights};
 
 use super::*;
 
-/// A host's copy of the buffers, brought up to date by changes alone.
+/// A host's copy of the buffers, updated only by changes.
 #[derive(Debug, Default, PartialEq)]
 struct Copy {
     positions: Vec<[f32; 3]>,
@@ -50,7 +50,7 @@ impl Copy {
 }
 
 #[test]
-fn ranges_are_all_that_changes() {
+fn ranges_cover_all_changes() {
     let mut session = open(super::attributes::painted_ball());
     let mut copy = Copy::default();
     copy.update(&mut session);
@@ -89,16 +89,18 @@ fn ranges_are_few_and_small() {
         let changes = session.take_changes();
         let length =
             |ranges: &[DirtyRange]| ranges.iter().map(|range| (range.end - range.start) as usize).sum::<usize>();
-        // Subdivision numbers the vertices of a patch in runs, level by level; pages near each other are told as one range.
+        // Subdivision numbers the vertices of a patch in runs, level by level; near pages are
+        // merged into one range.
         assert!(changes.positions.len() < 16, "{}", changes.positions.len());
-        // Each page of a run holds some that move, and two pages between runs may hold none.
+        // Each page of a run contains some that move, and up to two pages between runs contain
+        // none.
         assert!(length(&changes.positions) <= 6 * moved, "{moved}");
         assert_eq!(changes.indices, []);
     }
 }
 
 #[test]
-fn addresses_stay_as_long_as_the_generation_does() {
+fn addresses_change_only_with_the_generation() {
     let mut session = ball();
     let address = |session: &Session| (session.buffers().generation, session.buffers().positions.as_ptr() as usize);
     let (mut before, mut kept, mut moved) = (address(&session), 0, 0);
@@ -117,7 +119,7 @@ fn addresses_stay_as_long_as_the_generation_does() {
 }
 
 #[test]
-fn normals_are_those_of_the_whole_mesh() {
+fn normals_equal_those_of_the_exported_mesh() {
     let mut session =
         Session::open(icosphere(1.0, 3), SessionOptions { normals: NormalWeights::Angle, ..Default::default() })
             .unwrap();
@@ -125,9 +127,9 @@ fn normals_are_those_of_the_whole_mesh() {
     let exported = session.export(true);
     let expected = exported.mesh.vertex_normals();
     for (index, &vertex) in exported.vertices.iter().enumerate() {
-        // Without seams a vertex and its render vertex have one number.
+        // Without seams, a vertex and its render vertex have the same number.
         let normal = DVec3::from_array(session.buffers().normals[vertex as usize].map(f64::from));
-        // Rounded to f32 once; angles are taken in another way.
+        // Rounded to f32 once; angles are computed by another formula.
         assert!(normal.distance(expected[index]) < 1e-6, "vertex {vertex}");
     }
 }

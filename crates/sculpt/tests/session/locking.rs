@@ -18,7 +18,7 @@ fn the_host_sees_the_volume_of_the_mesh_as_opened() {
         assert!((bare.mesh.volume() - opened).abs() > 1e-9 * opened);
         let shift = receipt.lock_max_shift.unwrap();
         assert_eq!(receipt.lock_skipped, None);
-        // Edges of 0.1 at most, some times coarser than the field asks for.
+        // Edges of at most 0.1, several times coarser than the field needs.
         assert!(shift > 0.0 && shift < 0.1, "{shift}");
         assert!(locked.lock.unwrap().max_shift > 0.0 && bare.lock.is_none());
         for (vertex, (flow, shown)) in
@@ -28,7 +28,7 @@ fn the_host_sees_the_volume_of_the_mesh_as_opened() {
             assert_eq!(*flow + session.offsets()[*vertex as usize], *shown);
         }
     }
-    // Undo takes the lock back with the stroke.
+    // Undo also undoes the lock.
     while session.undo().unwrap() {
         volumes.pop();
         let before = volumes.last().copied().unwrap_or(opened);
@@ -50,13 +50,13 @@ fn a_session_without_a_lock_shows_the_flow() {
     }
     assert!(unlocked.offsets().iter().all(|&offset| offset == DVec3::ZERO));
     assert!(locked.offsets().iter().any(|&offset| offset != DVec3::ZERO));
-    // What strokes work on is the same.
+    // Strokes start from the same positions.
     assert_eq!(unlocked.positions(), locked.positions());
     assert_eq!(unlocked.export(true).mesh.positions, locked.export(false).mesh.positions);
 }
 
 #[test]
-fn a_lock_that_is_skipped_says_why() {
+fn a_skipped_lock_reports_its_reason() {
     let end = |session: &mut Session, poses: &[Pose]| -> StrokeReceipt {
         session.begin_stroke(&brush(), UNREFINED).unwrap();
         poses.iter().for_each(|pose| assert!(session.move_to(pose, 0.0).is_ok()));
@@ -76,7 +76,7 @@ fn a_lock_that_is_skipped_says_why() {
     opened.triangles.pop();
     assert_eq!(skipped(&mut open(opened), &poses), Some(LockSkipped::NeedsClosed));
 
-    // All that moves is one vertex that no triangle has.
+    // Only one vertex moves, and it has no triangles.
     let mut loose = icosphere(1.0, 3);
     loose.positions.push(DVec3::new(5.0, 0.0, 0.0));
     let mut session = open(loose);

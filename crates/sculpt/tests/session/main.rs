@@ -1,8 +1,10 @@
-//! The sculpting session.
+//! Tests of the sculpting session.
 
 mod attributes;
 mod buffers;
+mod keys;
 mod locking;
+mod own_tools;
 mod queries;
 mod random_calls;
 mod refinement;
@@ -21,14 +23,14 @@ use isochore_sculpt::{
     session::{InteractiveRefinement, Session, SessionOptions, SessionTool, StrokeOptions},
 };
 
-/// A brush of radius 0.2 that reaches 0.25 beyond.
+/// A brush of radius 0.2 and support 0.25.
 fn brush() -> Arc<SessionTool> {
     let shape = ToolShape::Sphere(Sphere { radius: 0.2 });
     let tool = Tool { shape, support: 0.25, profile: Profile::Quintic, free_form: 0.0 };
     Arc::new(SessionTool::new("brush", tool, &Meshes::new(), &NoProgress).unwrap())
 }
 
-/// A longer tool, with another profile.
+/// A longer tool with another profile.
 fn rod() -> Arc<SessionTool> {
     let shape = ToolShape::Capsule(Capsule { radius: 0.1, half_length: 0.3 });
     let tool = Tool { shape, support: 0.3, profile: Profile::Contact, free_form: 0.0 };
@@ -43,8 +45,8 @@ fn ball() -> Session {
     open(icosphere(1.0, 3))
 }
 
-/// Edges longer than `longest` are split, as long as there are few triangles: strokes that fold the surface over and over make it
-/// grow without end.
+/// Splits edges longer than `longest`, up to a limit on triangles: strokes that fold the surface
+/// repeatedly would make it grow without end.
 fn refined(longest: f64) -> StrokeOptions {
     let refine =
         InteractiveRefinement { longest: Some(longest), max_triangles: 12_000, ..InteractiveRefinement::default() };
@@ -53,7 +55,7 @@ fn refined(longest: f64) -> StrokeOptions {
 
 const UNREFINED: StrokeOptions = StrokeOptions { refine: None };
 
-/// Poses along an arc over the unit sphere, in and out of it, turning on the way.
+/// Poses along an arc over the unit sphere, in and out of it, with increasing rotation.
 fn arc(start: f64, count: usize) -> Vec<Pose> {
     let pose = |index: usize| {
         let angle = start + 0.06 * index as f64;
@@ -72,14 +74,14 @@ fn make(session: &mut Session, tool: &Arc<SessionTool>, options: &StrokeOptions,
     session.end_stroke().unwrap();
 }
 
-/// All that a host can see, bit for bit.
+/// Everything that a host can see, bit for bit.
 #[derive(Debug, Clone, PartialEq)]
 struct Snapshot {
     positions: Vec<[u64; 3]>,
     offsets: Vec<[u64; 3]>,
-    /// By vertex of the mesh as opened the one in its place.
+    /// For each vertex of the mesh as opened, the vertex that represents it.
     vertex_map: Vec<u32>,
-    /// By render vertex its vertex and where it comes from.
+    /// For each render vertex, its vertex and origin.
     render: Vec<(u32, Option<Origin>)>,
     triangles: Vec<Option<[u32; 3]>>,
     render_positions: Vec<[u32; 3]>,
@@ -110,7 +112,7 @@ fn snapshot(session: &Session) -> Snapshot {
     }
 }
 
-/// The surface must be closed, oriented, without branches, and finite.
+/// The surface must be closed, oriented, manifold and finite.
 fn assert_sound(session: &Session) {
     let check = session.export(false).mesh.check();
     assert!(check.is_closed() && check.is_oriented() && check.is_manifold() && check.is_valid(), "{check:?}");
@@ -118,7 +120,7 @@ fn assert_sound(session: &Session) {
 }
 
 #[test]
-fn a_session_can_be_handed_to_another_thread() {
+fn a_session_is_send() {
     fn is_send<T: Send>() {}
     is_send::<Session>();
 }

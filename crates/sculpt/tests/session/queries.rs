@@ -1,7 +1,7 @@
 use super::*;
 
 #[test]
-fn picks_and_closest_points_follow_the_surface() {
+fn picks_and_closest_points_are_on_the_surface() {
     let mut session = ball();
     for round in 0..5 {
         make(&mut session, &brush(), &refined(0.08), &arc(0.3 * f64::from(round), 9));
@@ -11,7 +11,7 @@ fn picks_and_closest_points_follow_the_surface() {
             let angle = f64::from(index) * 0.1;
             let point = DVec3::new(libm::cos(angle), libm::sin(angle), 0.3 * libm::sin(7.0 * angle)) * 1.4;
             let hit = session.closest_point(point).unwrap();
-            // Both round coordinates near one a few times.
+            // Both results round coordinates near one a few times.
             assert!((hit.distance - bvh.closest_point(point).distance).abs() < 1e-14);
             let picked = session.pick(point, -point).unwrap();
             assert!((picked.point - point * (1.0 - picked.distance)).length() < 1e-14);
@@ -20,8 +20,8 @@ fn picks_and_closest_points_follow_the_surface() {
             assert_eq!(session.triangle(picked.triangle), Some(picked.vertices));
             for hit in [&hit, &picked] {
                 let shown = hit.vertices.map(|v| session.positions()[v as usize] + session.offsets()[v as usize]);
-                let told: DVec3 = (0..3).map(|corner| shown[corner] * hit.weights[corner]).sum();
-                assert!(told.distance(hit.point) < 1e-14 && hit.weights.min_element() >= 0.0);
+                let weighted: DVec3 = (0..3).map(|corner| shown[corner] * hit.weights[corner]).sum();
+                assert!(weighted.distance(hit.point) < 1e-14 && hit.weights.min_element() >= 0.0);
                 assert!((hit.weights.element_sum() - 1.0).abs() < 1e-15);
             }
         }
@@ -32,7 +32,7 @@ fn picks_and_closest_points_follow_the_surface() {
 }
 
 #[test]
-fn what_is_in_reach_is_what_moves() {
+fn vertices_in_reach_are_those_that_move() {
     let mut session = ball();
     let (tool, poses) = (brush(), arc(0.0, 2));
     let mut within = Vec::new();
@@ -41,7 +41,7 @@ fn what_is_in_reach_is_what_moves() {
         .filter(|&vertex| session.positions()[vertex as usize].distance(poses[0].translation) < 0.2 + 0.25)
         .collect();
     assert_eq!(within, slow);
-    // A way so short that none enters.
+    // A move so short that no further vertex enters the support.
     let rest = session.positions().to_vec();
     let next = Pose { translation: poses[0].translation + DVec3::new(0.0, 0.0, 1e-9), ..poses[0] };
     session.begin_stroke(&tool, UNREFINED).unwrap();
@@ -54,7 +54,7 @@ fn what_is_in_reach_is_what_moves() {
 }
 
 #[test]
-fn previews_show_where_the_flow_goes() {
+fn previews_show_the_flow() {
     let session = ball();
     let [from, to] = [0.0, 0.05].map(|z| Pose::at(DVec3::new(1.0, 0.0, z)));
     let arrows = session.preview(&brush(), &from, &to, 9).unwrap();
@@ -62,7 +62,7 @@ fn previews_show_where_the_flow_goes() {
     for arrow in &arrows {
         let distance = arrow.point.distance(from.translation);
         assert!(distance < 0.45 + 0.05 && arrow.shift.length() <= 2.0 * 0.05);
-        // The core goes with the tool.
+        // The core moves with the tool.
         if distance < 0.14 {
             assert!(arrow.shift.distance(to.translation - from.translation) < 1e-15);
         }
@@ -70,18 +70,20 @@ fn previews_show_where_the_flow_goes() {
 }
 
 #[test]
-fn moved_volume_is_what_is_swept() {
+fn moved_volume_is_the_swept_volume() {
     let mut session = ball();
     session.begin_stroke(&brush(), refined(0.05)).unwrap();
     for index in 0..=10 {
         session.move_to(&Pose::at(DVec3::new(0.0, 0.0, 1.0 - 0.01 * f64::from(index))), 0.0).unwrap();
     }
     let moved = session.moved_volume();
-    // The core alone, a disk of radius 0.2, goes down by a tenth; what flows around it comes up again.
+    // The core alone, a disk of radius 0.2, moves down by a tenth. The return flow moves up around
+    // it.
     let least = 0.8 * std::f64::consts::PI * 0.04 * 0.1;
     assert!(moved.inward > least && moved.inward < 8.0 * least, "{moved:?}");
     let volume = session.end_stroke().unwrap().volume.unwrap();
-    // Swept volumes balance but for what the volume changed, up to second order of the step over the tool.
+    // Swept volumes balance up to the change of the volume, with an error of second order in the
+    // step over the tool.
     assert!((moved.outward - moved.inward - volume.total()).abs() < 0.02 * moved.inward, "{moved:?} {volume:?}");
     assert_eq!(session.moved_volume(), Default::default());
 }

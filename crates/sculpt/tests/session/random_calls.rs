@@ -3,7 +3,7 @@ use isochore_sculpt::recipe::{Mask, Pin};
 
 use super::*;
 
-/// Numbers without a pattern (D. Lehmer's generator with the multiplier of L'Ecuyer's table, 1999).
+/// Pseudorandom numbers (D. Lehmer's generator with the multiplier of L'Ecuyer's table, 1999).
 struct Numbers(u64);
 
 impl Numbers {
@@ -21,13 +21,13 @@ impl Numbers {
     }
 }
 
-/// A session with what it should be.
+/// A session with its expected state.
 struct Checked {
     session: Session,
     options: SessionOptions,
     numbers: Numbers,
     tools: [Arc<SessionTool>; 2],
-    /// States that undo should lead to, and redo.
+    /// Expected states after undo and redo.
     done: Vec<Snapshot>,
     undone: Vec<Snapshot>,
     now: Snapshot,
@@ -35,7 +35,7 @@ struct Checked {
     time: f64,
     strokes: usize,
     forgotten: usize,
-    /// Triangles that the stroke under way may not go beyond.
+    /// Maximum number of triangles during the stroke under way.
     most: usize,
     locked: usize,
     edits: [usize; 3],
@@ -99,7 +99,7 @@ impl Checked {
     fn move_on(&mut self) {
         let turn = self.numbers.direction() * self.numbers.next();
         let shift = self.numbers.direction() * (0.2 * self.numbers.next());
-        // Back towards the surface where it has gone away.
+        // Pull the tool back towards the surface.
         let pull = self.pose.translation.normalize_or_zero() - self.pose.translation;
         self.pose.translation += shift + 0.2 * pull;
         self.pose.rotation = rotation_from_vector(turn) * self.pose.rotation;
@@ -125,7 +125,8 @@ impl Checked {
             let after = self.session.export(false).mesh.volume();
             let mut expected = CompensatedSum::default();
             [before, volume.total()].into_iter().for_each(|part| expected.add(part));
-            // Each stroke so far has added its bound on rounding; the whole sum rounds by some units.
+            // Each stroke so far has added at most its bound on rounding, and the sum itself rounds
+            // too.
             let tolerance = volume.rounding * (self.forgotten + self.done.len() + 1) as f64 + 1e-13;
             assert!((after - expected.value()).abs() < tolerance, "{volume:?}: {after} {}", expected.value());
             if receipt.lock_max_shift.is_some() {
@@ -166,11 +167,11 @@ impl Checked {
 }
 
 #[test]
-fn twelve_thousand_calls_leave_a_sound_surface() {
+fn random_calls_keep_the_surface_sound() {
     let mut edits = [0; 3];
     let (mut forgotten, mut locked) = (0, 0);
     let mut cut = super::attributes::painted_ball();
-    // A hole in one place.
+    // Cut one hole.
     for index in (0..cut.triangles.len()).rev() {
         if cut.triangles[index].iter().all(|&vertex| cut.positions[vertex as usize].x > 0.8) {
             cut.triangles.remove(index);

@@ -14,7 +14,7 @@ fn stroke(session: &mut Session, tool: &Arc<SessionTool>, options: StrokeOptions
     session.end_stroke().unwrap()
 }
 
-/// Straight down on the top of a box of half-extent one.
+/// Poses straight down onto the top of a box of half-extent one.
 fn press(depth: f64) -> Vec<Pose> {
     (0..=20).map(|index| Pose::at(DVec3::new(0.2, 0.1, 1.3 - depth * f64::from(index) / 20.0))).collect()
 }
@@ -25,17 +25,18 @@ fn a_brush_shapes_a_coarse_box() {
     let receipt = stroke(&mut session, &brush(), StrokeOptions::default(), &press(0.3));
     assert_sound(&session);
     assert!(receipt.inserted_vertices > 100 && receipt.touched_vertices == 0, "{receipt:?}");
-    // The lowest point follows the tool down, short of it by the part of the field that has not carried it.
+    // The lowest point follows the tool down, but not completely, because the field fades.
     let lowest = session.positions().iter().filter(|p| p.z > 0.0).map(|p| p.z).fold(f64::INFINITY, f64::min);
     assert!(lowest < 0.9, "{lowest}");
-    // The other side is nearly as coarse as before: only triangles that reach up to the tool are halved, down to its level.
+    // The other side is nearly as coarse as before: only triangles that extend up to the tool are
+    // halved.
     let far = |p: &&DVec3| p.z < 0.0;
     let count = session.positions().iter().filter(far).count();
     assert!(count < 20, "{count}");
 }
 
 #[test]
-fn receipts_tell_what_became_of_the_volume() {
+fn receipts_report_the_change_of_the_volume() {
     let mut session = ball();
     let mut tools = [brush(), rod()].into_iter().cycle();
     for round in 0..10 {
@@ -44,7 +45,7 @@ fn receipts_tell_what_became_of_the_volume() {
         let receipt = stroke(&mut session, &tool, refined(0.1), &arc(0.9 * f64::from(round), 12));
         let volume = receipt.volume.unwrap();
         let after = session.export(false).mesh.volume();
-        // The whole sums round by some units of the whole volume.
+        // Sums over the whole mesh round by some units of the last place of the volume.
         let tolerance = volume.rounding + 1e-14 * before;
         assert!((volume.total() - (after - before)).abs() < tolerance, "{volume:?} {}", after - before);
         assert!(volume.rounding < 1e-9 * before, "{volume:?}");
@@ -61,13 +62,14 @@ fn finer_limits_change_less_volume() {
         let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(options) }, &press(0.35));
         receipt.volume.unwrap().bare().abs()
     };
-    // The facet error falls with the square of the length; what counts is that three halvings take most of it.
+    // The facet error is of second order in the edge length, so three halvings must remove most of
+    // it.
     let [coarse, fine] = [0.16, 0.02].map(bare);
     assert!(fine < coarse / 10.0, "{coarse:e} {fine:e}");
 }
 
 #[test]
-fn without_edits_nothing_is_booked_as_remeshing() {
+fn remeshing_is_zero_without_edits() {
     let mut session = ball();
     let volume = stroke(&mut session, &brush(), UNREFINED, &arc(0.0, 9)).volume.unwrap();
     assert_eq!((volume.splits, volume.remeshing), (0.0, 0.0));
@@ -75,7 +77,7 @@ fn without_edits_nothing_is_booked_as_remeshing() {
 }
 
 #[test]
-fn squeezed_edges_collapse_and_bad_pairs_flip() {
+fn squeezed_edges_collapse_and_bad_triangles_flip() {
     let mut session = ball();
     let back_and_forth: Vec<Pose> =
         [press(0.5), press(0.5).into_iter().rev().collect()].concat().into_iter().cycle().take(160).collect();
@@ -100,7 +102,7 @@ fn the_limit_on_triangles_holds() {
 }
 
 #[test]
-fn what_is_kept_or_frozen_stays() {
+fn does_not_edit_kept_or_frozen_edges() {
     let keep = (DVec3::Z, 10.0);
     let mut session = ball();
     let options = InteractiveRefinement { longest: Some(0.05), keep: vec![keep], ..InteractiveRefinement::default() };
@@ -127,7 +129,7 @@ fn what_is_kept_or_frozen_stays() {
 }
 
 #[test]
-fn inserted_vertices_can_be_frozen_and_are_while_they_are_there() {
+fn freezes_inserted_vertices_until_they_are_removed() {
     let count = ball().vertex_count() as u32;
     let edits = |session: &mut Session, longest: f64| {
         let receipt = stroke(session, &rod(), refined(longest), &press(0.3));
@@ -139,13 +141,13 @@ fn inserted_vertices_can_be_frozen_and_are_while_they_are_there() {
     let beyond = session.vertex_count() as u32;
     let refused = session.freeze_edges(&[0, beyond]).unwrap_err();
     assert_eq!(refused, SessionError::NoVertex { vertex: beyond, count: beyond as usize });
-    // What is refused freezes nothing, and what is frozen is not edited.
+    // A rejected call freezes nothing. Frozen edges are not edited.
     assert_ne!(edits(&mut session, 0.07), [0; 3]);
     assert!(session.undo().unwrap());
     session.freeze_edges(&reached).unwrap();
     assert_eq!(edits(&mut session, 0.07), [0; 3]);
 
-    // The vertices are frozen again when they come back, but not others that get their numbers.
+    // Restored vertices are frozen again, but not new vertices with the same numbers.
     assert!(session.undo().unwrap() && session.undo().unwrap());
     assert!(session.redo().unwrap());
     assert_eq!(edits(&mut session, 0.07), [0; 3]);
@@ -161,8 +163,8 @@ fn inserted_vertices_can_be_frozen_and_are_while_they_are_there() {
 }
 
 #[test]
-fn undone_and_canceled_strokes_keep_what_is_frozen() {
-    // A canceled stroke takes numbers of vertices that were undone, and gives them back.
+fn undone_and_canceled_strokes_keep_edges_frozen() {
+    // A canceled stroke temporarily uses the numbers of undone vertices.
     let edits = |is_hesitant: bool| {
         let mut session = ball();
         make(&mut session, &brush(), &refined(0.1), &press(0.3));
@@ -179,7 +181,8 @@ fn undone_and_canceled_strokes_keep_what_is_frozen() {
     };
     assert_eq!([false, true].map(edits), [0, 0]);
 
-    // A later call frees what it does not name, also what is undone meanwhile.
+    // A later call releases all other edges, including those of vertices that are undone at the
+    // time.
     let mut session = ball();
     make(&mut session, &brush(), &refined(0.1), &press(0.3));
     let all: Vec<u32> = session.vertices().collect();
@@ -191,7 +194,7 @@ fn undone_and_canceled_strokes_keep_what_is_frozen() {
 }
 
 #[test]
-fn a_mask_holds_edges_as_well_as_vertices() {
+fn a_mask_holds_edges_and_vertices() {
     let session = |weights: Vec<f64>| {
         let mask = Mask { vertices: Some(VertexWeights::Values(weights)), fade: Some(0.2), ..Mask::default() };
         Session::open(icosphere(1.0, 3), SessionOptions { mask, ..SessionOptions::default() }).unwrap()
@@ -205,7 +208,8 @@ fn a_mask_holds_edges_as_well_as_vertices() {
     assert_eq!((receipt.touched_vertices, receipt.inserted_vertices, receipt.flipped_edges), (0, 0, 0));
     assert_eq!(snapshot(&held), before);
 
-    // Half of what the brush reaches: triangles whose corners are all held stay as they are, and others are refined.
+    // Hold half of the brush's reach: triangles whose corners are all held do not change, and
+    // others are refined.
     let is_held = |p: &DVec3| p.x > 0.2;
     let mut half = session(ball().positions().iter().map(|p| f64::from(is_held(p))).collect());
     let receipt = stroke(&mut half, &brush(), fine, &press(0.3));
@@ -223,7 +227,7 @@ fn a_mask_holds_edges_as_well_as_vertices() {
 }
 
 #[test]
-fn only_triangles_near_the_way_of_the_tool_are_edited() {
+fn only_triangles_near_the_path_of_the_tool_are_edited() {
     let mesh = icosphere(1.0, 4);
     let mut session = open(mesh.clone());
     let poses = arc(0.0, 6);
@@ -234,8 +238,8 @@ fn only_triangles_near_the_way_of_the_tool_are_edited() {
     let longest = edge.map(|ends| ends.map(|end| mesh.positions[end as usize])).map(|[a, b]| a.distance(b));
     let longest = longest.fold(0.0, f64::max);
     let step = poses.windows(2).map(|pair| pair[0].translation.distance(pair[1].translation)).fold(0.0, f64::max);
-    // The ball around a triangle that may be met reaches an edge beyond the support, its corners another; splits cut the triangle on
-    // the other side of an edge as well.
+    // The ball around a triangle that may be touched extends an edge beyond the support, and its
+    // corners another edge. A split also cuts the triangle on the other side of its edge.
     let reach = 0.2 + 0.25 + 0.5 * step + 3.0 * longest;
     let (mut far, mut near) = (0, 0);
     for (triangle, corners) in (0_u32..).zip(&mesh.triangles) {
@@ -269,7 +273,7 @@ fn an_open_surface_keeps_its_boundary() {
 }
 
 #[test]
-fn what_cannot_be_edited_is_refused_by_name() {
+fn rejects_invalid_meshes_and_options_by_name() {
     let refuse = |triangles: Vec<[u32; 3]>| {
         let positions = (0..6).map(|i| DVec3::new(f64::from(i), f64::from(i * i), 1.0)).collect();
         Session::open(TriMesh::new(positions, triangles), SessionOptions::default()).unwrap_err()
@@ -294,17 +298,17 @@ fn what_cannot_be_edited_is_refused_by_name() {
 }
 
 #[test]
-fn a_core_that_stirs_the_surface_does_not_grow_it_without_end() {
+fn stirring_does_not_add_triangles_without_end() {
     let spin = |phase: f64| Pose { rotation: rotation_from_vector(DVec3::Z * phase), translation: DVec3::Z };
     let circle = |phase: f64| Pose::at(DVec3::new(0.15 * libm::sin(phase), 0.15 * libm::cos(phase), 0.95));
-    for way in [&spin as &dyn Fn(f64) -> Pose, &circle] {
+    for path in [&spin as &dyn Fn(f64) -> Pose, &circle] {
         let mut session = ball();
-        let poses: Vec<Pose> = (0..60).map(|index| way(0.4 * f64::from(index))).collect();
+        let poses: Vec<Pose> = (0..60).map(|index| path(0.4 * f64::from(index))).collect();
         let options = InteractiveRefinement { longest: Some(0.06), ..InteractiveRefinement::default() };
         let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(options) }, &poses);
         assert_sound(&session);
-        // Some 700 triangles of that size lie in reach, a cap of radius 0.6. Each time over, a split makes four edges of one, and
-        // there are four times. Without a bound each move doubles them.
+        // About 700 triangles of that size are in reach, a cap of radius 0.6. Each of the four
+        // halvings makes four triangles of one. Without the bound, each move would double them.
         assert!(session.triangle_count() < 256 * 700, "{}", session.triangle_count());
         assert!(!receipt.is_limited && receipt.refused_splits > 0, "{receipt:?}");
     }

@@ -4,7 +4,7 @@ use isochore_sculpt::{
     Meshes, Recipe,
     recipe::{Format, Mask, MirrorPlane, Pin},
     replay_points,
-    session::{SessionError, SessionOptions, SessionReplayError},
+    session::{SessionError, SessionOptions, SessionReplayError, Supplies},
 };
 
 use super::*;
@@ -14,12 +14,12 @@ fn meshes(mesh: TriMesh) -> Meshes {
 }
 
 #[test]
-fn vertices_go_where_the_flow_of_the_recorded_move_takes_them() {
+fn vertices_move_with_the_flow_of_the_logged_move() {
     for options in [UNREFINED, refined(0.08)] {
         let mut session = ball();
         let rest = session.positions().to_vec();
         make(&mut session, &brush(), &options, &arc(0.0, 20));
-        // The poses as the log has them.
+        // The poses of the log.
         let log = session.log();
         let isochore_sculpt::recipe::Stroke::Move(motion) = &log.strokes[0] else { panic!("a move") };
         let keys = motion.keys.iter().map(|key| {
@@ -29,14 +29,14 @@ fn vertices_go_where_the_flow_of_the_recorded_move_takes_them() {
             Pose { rotation: DQuat::from_xyzw(axis.x, axis.y, axis.z, libm::cos(half)), translation: key.at.into() }
         });
         let stroke = Stroke::Move(Move::new(Arc::clone(brush().tool()), keys.collect(), 0.125).unwrap());
-        let carried = advect_points(&rest, &[stroke], &NoProgress).unwrap();
-        assert_eq!(&session.positions()[..rest.len()], &carried[..]);
-        assert!(carried.iter().zip(&rest).filter(|(a, b)| a != b).count() > 30);
+        let advected = advect_points(&rest, &[stroke], &NoProgress).unwrap();
+        assert_eq!(&session.positions()[..rest.len()], &advected[..]);
+        assert!(advected.iter().zip(&rest).filter(|(a, b)| a != b).count() > 30);
     }
 }
 
 #[test]
-fn the_log_gives_the_same_anywhere() {
+fn replays_of_the_log_give_the_same_bits() {
     let pin = Pin { center: [0.8, 0.6, 0.0], radius: 0.1, support: 0.2 };
     let mirror = MirrorPlane { point: [0.0; 3], normal: [0.0, 0.0, 1.0] };
     for mask in [
@@ -55,7 +55,7 @@ fn the_log_gives_the_same_anywhere() {
         let read = Recipe::parse(&log.to_toml(), Format::Toml, &[]).unwrap();
         assert_eq!(read, log);
 
-        // As bare points, and of a finer mesh, whose first vertices are the same.
+        // On points, also on those of a finer mesh, whose first vertices are the same.
         let points = replay_points(&log, &meshes(mesh.clone()), &mesh.positions, &NoProgress).unwrap().points;
         assert_eq!(&session.positions()[..points.len()], &points[..]);
         let finer = icosphere(1.0, 4).positions;
@@ -63,7 +63,7 @@ fn the_log_gives_the_same_anywhere() {
         assert_eq!(finer[..mesh.positions.len()], mesh.positions[..]);
         assert_eq!(&session.positions()[..mesh.positions.len()], &points[..mesh.positions.len()]);
 
-        // And headless on the mesh itself, before the lock.
+        // On the mesh itself, with and without the lock.
         let mut plain = log.clone();
         plain.refine.enabled = false;
         assert!(plain.volume.lock);
@@ -77,9 +77,9 @@ fn the_log_gives_the_same_anywhere() {
         assert_eq!(replayed.deformed.receipt.lock_max_shift, None);
         assert_eq!(&session.positions()[..count], &replayed.deformed.mesh.positions[..count]);
 
-        // And in another session.
+        // In another session.
         let mut again = Session::open(mesh, session_options(&log)).unwrap();
-        let receipts = again.replay(&log, &Meshes::new(), &UNREFINED, &NoProgress).unwrap();
+        let receipts = again.replay(&log, &Supplies::default(), &UNREFINED, &NoProgress).unwrap();
         assert_eq!(receipts.len(), 3);
         assert_eq!(&again.positions()[..count], &session.positions()[..count]);
         assert_eq!(again.log(), log);
@@ -87,7 +87,7 @@ fn the_log_gives_the_same_anywhere() {
 }
 
 #[test]
-fn the_log_asks_for_a_lock_only_where_there_was_one() {
+fn the_log_enables_the_lock_only_if_the_session_had_one() {
     let mut opened = icosphere(1.0, 3);
     opened.triangles.pop();
     let unlocked = SessionOptions { lock: false, ..SessionOptions::default() };
@@ -107,7 +107,7 @@ fn session_options(log: &Recipe) -> SessionOptions {
 }
 
 #[test]
-fn tools_of_one_name_are_told_apart() {
+fn different_tools_of_the_same_name_get_different_entries() {
     let mut session = ball();
     let other = SessionTool::new("brush", rod().description().clone(), &Meshes::new(), &NoProgress).unwrap();
     make(&mut session, &brush(), &UNREFINED, &arc(0.0, 3));
@@ -119,15 +119,15 @@ fn tools_of_one_name_are_told_apart() {
 }
 
 #[test]
-fn a_session_replays_moves_alone() {
+fn a_session_replays_only_moves() {
     let text = "recipe = 1\n[target]\nmesh = 'm'\n[[stroke]]\nkind = 'twist'\norigin = [0,0,0]\naxis = [0,0,1]\ndegrees_per_unit = 3\n";
     let recipe = Recipe::parse(text, Format::Toml, &[]).unwrap();
-    let error = ball().replay(&recipe, &Meshes::new(), &UNREFINED, &NoProgress).unwrap_err();
+    let error = ball().replay(&recipe, &Supplies::default(), &UNREFINED, &NoProgress).unwrap_err();
     assert!(matches!(error, SessionReplayError::Kind { index: 0, kind: "twist" }), "{error}");
 }
 
 #[test]
-fn calls_out_of_turn_are_refused_and_change_nothing() {
+fn rejected_calls_change_nothing() {
     let mut session = ball();
     let pose = Pose::at(DVec3::X);
     assert_eq!(session.move_to(&pose, 0.0).unwrap_err(), SessionError::NoStroke);
@@ -142,13 +142,22 @@ fn calls_out_of_turn_are_refused_and_change_nothing() {
     assert_eq!(session.move_to(&pose, 0.5).unwrap_err(), SessionError::Time { time: 0.5, last: 1.0 });
     assert!(matches!(session.move_to(&pose, f64::NAN), Err(SessionError::Time { .. })));
     let nowhere = Pose::at(DVec3::NAN);
-    assert!(matches!(session.move_to(&nowhere, 2.0), Err(SessionError::Stroke(StrokeError::Move(MoveError::NotFinite)))));
+    assert!(matches!(
+        session.move_to(&nowhere, 2.0),
+        Err(SessionError::Stroke(StrokeError::Move(MoveError::NotFinite)))
+    ));
     let turned = Pose { rotation: DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0), ..pose };
-    assert!(matches!(session.move_to(&turned, 2.0), Err(SessionError::Stroke(StrokeError::Move(MoveError::HalfTurn { .. })))));
+    assert!(matches!(
+        session.move_to(&turned, 2.0),
+        Err(SessionError::Stroke(StrokeError::Move(MoveError::HalfTurn { .. })))
+    ));
     let far = Pose::at(DVec3::X * 1e9);
-    assert!(matches!(session.move_to(&far, 2.0), Err(SessionError::Stroke(StrokeError::Move(MoveError::TooManySteps { .. })))));
+    assert!(matches!(
+        session.move_to(&far, 2.0),
+        Err(SessionError::Stroke(StrokeError::Move(MoveError::TooManySteps { .. })))
+    ));
     assert_eq!(snapshot(&session), before);
-    // One pose alone is no stroke.
+    // A stroke needs two poses.
     assert_eq!(session.end_stroke().unwrap().moves, 0);
     assert_eq!((session.history().undoable, session.log().strokes.len()), (0, 0));
 }

@@ -1,25 +1,25 @@
 use super::*;
 
-/// Splits to edges of a third of the brush's reach, and nothing else.
+/// Only splits, to edges of a third of the brush's support.
 fn refining() -> StrokeOptions {
     let refine = InteractiveRefinement { longest: Some(0.08), collapse: 0.0, ..InteractiveRefinement::default() };
     StrokeOptions { refine: Some(refine) }
 }
 
-/// Collapses all that the stroke squeezes to half, and splits nothing.
+/// Only collapses, all edges that the stroke squeezes to half.
 fn coarsening() -> StrokeOptions {
     let refine = InteractiveRefinement { longest: Some(1.0), collapse: 0.3, ..InteractiveRefinement::default() };
     StrokeOptions { refine: Some(refine) }
 }
 
-/// Elements that are there, and places for them: render vertices and triangles.
+/// Numbers of elements in use and of slots, for render vertices and triangles.
 fn lengths(session: &Session) -> [[usize; 2]; 2] {
     let (render, triangles) = (session.buffers().positions.len(), session.buffers().indices.len());
     let shown = (0..render as u32).filter(|&render| session.vertex_of(render) != u32::MAX).count();
     [[shown, render], [session.triangle_count(), triangles]]
 }
 
-/// The brush is pulled out of the ball along a direction, or goes back.
+/// Poses that pull the brush out of the ball along a direction, or push it back.
 fn pull(direction: DVec3, is_back: bool) -> Vec<Pose> {
     let pose = |index: usize| {
         let step = if is_back { 8 - index } else { index };
@@ -29,7 +29,7 @@ fn pull(direction: DVec3, is_back: bool) -> Vec<Pose> {
 }
 
 #[test]
-fn buffers_are_as_long_as_the_surface_needs_and_not_its_history() {
+fn buffers_do_not_grow_with_the_history() {
     for mesh in [icosphere(1.0, 3), super::attributes::painted_ball()] {
         let mut session = open(mesh);
         let opened = session.opened().positions.len();
@@ -45,17 +45,18 @@ fn buffers_are_as_long_as_the_surface_needs_and_not_its_history() {
             assert_eq!(now > before, !is_back);
             inserted += now.saturating_sub(before);
 
-            // A stroke takes all places that are free before it makes new ones, those of vertices of the mesh as opened apart.
-            let [[shown, render], [triangles, places]] = lengths(&session);
+            // A stroke reuses all free slots before it adds new ones, except those of vertices of
+            // the mesh as opened.
+            let [[shown, render], [triangles, slots]] = lengths(&session);
             let gone = opened - session.vertices().filter(|&vertex| (vertex as usize) < opened).count();
             (most_shown, most_triangles) = (most_shown.max(shown + gone), most_triangles.max(triangles));
-            assert!(render <= most_shown && places <= most_triangles);
+            assert!(render <= most_shown && slots <= most_triangles);
             snapshots.push(snapshot(&session));
         }
         assert_sound(&session);
-        // Many times as many as there are places for.
-        let places = session.vertex_count() - opened;
-        assert!(inserted > 3 * places && places > 300, "{inserted} {places}");
+        // Far more insertions than slots.
+        let slots = session.vertex_count() - opened;
+        assert!(inserted > 3 * slots && slots > 300, "{inserted} {slots}");
         for expected in snapshots.iter().rev().skip(1) {
             assert!(session.undo().unwrap());
             assert_eq!(snapshot(&session), *expected);
@@ -68,7 +69,7 @@ fn buffers_are_as_long_as_the_surface_needs_and_not_its_history() {
 }
 
 #[test]
-fn places_are_taken_alike_whatever_was_undone() {
+fn reuse_of_slots_does_not_depend_on_undone_strokes() {
     let strokes = |session: &mut Session, is_hesitant: bool| {
         for round in 0..8 {
             let (is_back, direction) = (round % 2 == 1, [DVec3::X, DVec3::Z][round / 2 % 2]);
@@ -92,7 +93,7 @@ fn places_are_taken_alike_whatever_was_undone() {
 }
 
 #[test]
-fn removed_vertices_are_mapped_to_what_is_in_their_place() {
+fn vertex_map_returns_the_replacement_of_removed_vertices() {
     let (mut session, mut unrefined) = (ball(), ball());
     let opened: Vec<u32> = (0..session.vertex_count() as u32).collect();
     assert_eq!(session.vertex_map(), opened);
@@ -107,12 +108,12 @@ fn removed_vertices_are_mapped_to_what_is_in_their_place() {
             assert!(session.is_alive(kept));
             assert_eq!(session.is_alive(vertex), kept == vertex);
         }
-        // The flow takes the vertices of the mesh as opened to the same places whatever is edited around them.
+        // Edits do not influence the motion of the vertices of the mesh as opened.
         let distance = |vertex: u32| {
             unrefined.positions()[vertex as usize].distance(session.positions()[map[vertex as usize] as usize])
         };
         let farthest = opened.iter().map(|&vertex| distance(vertex)).fold(0.0, f64::max);
-        // No collapse spans more than 0.3, and the brush that goes back leaves nothing stretched.
+        // No collapse spans more than 0.3, and the brush leaves nothing stretched after its return.
         assert!(!is_back || farthest < 0.3, "{farthest}");
         onto_inserted += map.iter().filter(|&&kept| kept as usize >= opened.len()).count();
         maps.push(map);

@@ -3,7 +3,7 @@ use isochore_sculpt::session::{History, SessionOptions};
 use super::*;
 
 #[test]
-fn a_hundred_strokes_undone_and_redone_give_the_same_bits() {
+fn undo_and_redo_of_a_hundred_strokes_restore_the_bits() {
     let mut session = ball();
     let mut states = vec![snapshot(&session)];
     for index in 0..100 {
@@ -23,7 +23,7 @@ fn a_hundred_strokes_undone_and_redone_give_the_same_bits() {
         assert_eq!(snapshot(&session), *state);
     }
     assert!(!session.redo().unwrap());
-    // What follows does not depend on what was undone and redone, nor on what was canceled.
+    // Later strokes do not depend on undone, redone or canceled ones.
     let mut other = ball();
     for index in 0..100 {
         let tool = if index % 3 == 0 { rod() } else { brush() };
@@ -39,7 +39,7 @@ fn a_hundred_strokes_undone_and_redone_give_the_same_bits() {
 }
 
 #[test]
-fn a_canceled_stroke_leaves_no_bit() {
+fn a_canceled_stroke_leaves_no_trace() {
     let mut session = ball();
     make(&mut session, &brush(), &refined(0.1), &arc(0.0, 5));
     let before = snapshot(&session);
@@ -54,7 +54,7 @@ fn a_canceled_stroke_leaves_no_bit() {
 }
 
 #[test]
-fn the_oldest_strokes_are_forgotten_first_and_the_log_keeps_them() {
+fn undo_forgets_the_oldest_strokes_and_the_log_keeps_them() {
     let mut session = ball();
     make(&mut session, &brush(), &UNREFINED, &arc(0.0, 5));
     let one = session.history().bytes;
@@ -73,13 +73,13 @@ fn the_oldest_strokes_are_forgotten_first_and_the_log_keeps_them() {
     while session.undo().unwrap() {}
     assert_eq!(session.log().strokes.len(), forgotten);
     assert_eq!(session.history().redoable, history.undoable);
-    // A new stroke takes the place of those undone.
+    // A new stroke replaces the undone ones.
     make(&mut session, &brush(), &UNREFINED, &arc(1.0, 3));
     assert_eq!(session.history().redoable, 0);
 }
 
 #[test]
-fn memory_of_a_stroke_is_in_proportion_to_what_it_touched() {
+fn memory_of_a_stroke_is_proportional_to_the_touched_vertices() {
     let bytes = |subdivisions| {
         let mut session = open(icosphere(1.0, subdivisions));
         session.begin_stroke(&brush(), UNREFINED).unwrap();
@@ -87,13 +87,14 @@ fn memory_of_a_stroke_is_in_proportion_to_what_it_touched() {
         let receipt = session.end_stroke().unwrap();
         receipt.undo_bytes as f64 / receipt.touched_vertices as f64
     };
-    // Position and offset, the f32 copy and the normal, each with a number; and a rim of normals that is thinner on finer meshes.
+    // Position and offset, the f32 copy and the normal, each with a number, and a rim of normals
+    // that is thinner on finer meshes.
     let [coarse, fine] = [3, 5].map(bytes);
     assert!(fine < 104.0 + 16.0 && fine < coarse, "{coarse} {fine}");
 }
 
 #[test]
-fn memory_of_a_refined_stroke_is_in_proportion_too_also_once_undone() {
+fn memory_of_a_refined_stroke_is_proportional_also_after_undo() {
     for subdivisions in [3, 4] {
         let mut session = open(icosphere(1.0, subdivisions));
         session.begin_stroke(&brush(), refined(0.03)).unwrap();
@@ -102,8 +103,9 @@ fn memory_of_a_refined_stroke_is_in_proportion_too_also_once_undone() {
         assert!(receipt.inserted_vertices > 500, "{receipt:?}");
         assert!(session.undo().unwrap());
         let bytes = session.history().bytes;
-        // 128 bytes a vertex inserted, with its render vertex, and 88 for its two triangles. Of a vertex that was there, 104 and 20
-        // as above, and six triangles at 56 that were cut. The rim around all that is a twentieth at most.
+        // For an inserted vertex, 128 bytes with its render vertex, and 88 for its two triangles.
+        // For an existing vertex, 104 and 20 as above, and six cut triangles at 56. The rim adds at
+        // most a twentieth.
         let expected = 216 * (receipt.inserted_vertices - receipt.removed_vertices) + 460 * receipt.touched_vertices;
         let most = 216 * receipt.inserted_vertices + 460 * receipt.touched_vertices;
         assert!(bytes as f64 <= 1.05 * most as f64, "{bytes} {expected}");
@@ -112,7 +114,7 @@ fn memory_of_a_refined_stroke_is_in_proportion_too_also_once_undone() {
 }
 
 #[test]
-fn what_undo_holds_stays_within_its_budget() {
+fn undo_stays_within_its_memory() {
     let stroke = |session: &mut Session, index: i32| {
         make(session, &brush(), &refined(0.05), &arc(0.4 * f64::from(index), 6));
         session.history().bytes
@@ -123,7 +125,7 @@ fn what_undo_holds_stays_within_its_budget() {
     (0..8).for_each(|index| assert!(stroke(&mut session, index) <= most));
     let History { undoable, forgotten, bytes, .. } = session.history();
     assert!(undoable >= 2 && forgotten >= 1, "{:?}", session.history());
-    // Undo has to hold what was inserted, and redo gives it back: both are in the number from the start.
+    // The number includes from the start what undo will need to store for redo.
     let before = snapshot(&session);
     for step in [Session::undo, Session::redo, Session::undo] {
         while step(&mut session).unwrap() {

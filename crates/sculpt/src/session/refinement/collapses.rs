@@ -1,52 +1,79 @@
+//! Collapses of squeezed edges.
+
+use std::cmp::Reverse;
+
 use glam::DVec3;
-use isochore_mesh::previous_half_edge;
+use isochore_mesh::{NONE, previous_half_edge};
 
-use super::{InteractiveRefinement, Limits, Pass};
+use super::{edits::Edits, pass::Pass};
 
-/// Only edges that the stroke has squeezed below this share of their length when it began are collapsed. Larger eats detail of the
-/// mesh that is merely finer than the tool; smaller leaves slivers.
+/// An edge is collapsed only if the stroke has squeezed it below this fraction of its length at the
+/// beginning of the stroke. Larger destroys detail of a mesh that is merely finer than the tool;
+/// smaller leaves slivers.
 const SQUEEZED: f64 = 0.5;
 
-/// Cosine of the angle by which a collapse may turn a triangle. Larger refuses collapses of curved surface; smaller lets folds in.
+/// Cosine of the angle by which a collapse may turn a triangle. Larger refuses collapses of curved
+/// surface; smaller allows folds.
 const MOST_TURN: f64 = 0.7;
+
+/// Result of collapsing edges.
+#[derive(Debug, Default)]
+pub(super) struct Collapses {
+    /// Triangles at the removed vertices, removed triangles included.
+    pub(super) triangles: Vec<u32>,
+    /// Volume that each collapse adds.
+    pub(super) volumes: Vec<f64>,
+}
+
+impl From<Collapses> for Edits {
+    fn from(collapses: Collapses) -> Self {
+        Self {
+            triangles: collapses.triangles,
+            removed_vertices: collapses.volumes.len(),
+            remeshing_volumes: collapses.volumes,
+            ..Self::default()
+        }
+    }
+}
 
 impl Pass<'_> {
     /// Collapses edges that the stroke has squeezed, shortest first.
-    pub(super) fn collapse(
-        &mut self,
-        mut short: Vec<(f64, [u32; 2])>,
-        options: &InteractiveRefinement,
-        limits: &Limits,
-    ) {
+    pub(super) fn collapse(&mut self, mut short: Vec<(f64, [u32; 2])>) -> Collapses {
+        let mut collapses = Collapses::default();
         short.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         short.dedup_by_key(|(_, edge)| *edge);
-        for (_, [a, b]) in short {
-            let length2 = |ends: [DVec3; 2]| ends[0].distance_squared(ends[1]);
-            let now = length2([a, b].map(|vertex| self.surface.position(vertex)));
-            let before = length2([a, b].map(|vertex| self.surface.base(vertex)));
-            if now >= limits.shortest2 || now >= SQUEEZED * SQUEEZED * before {
+        for (_, ends) in short {
+            let Some(half_edge) = self.is_squeezed(ends).then(|| self.harmless_collapse(ends)).flatten() else {
                 continue;
-            }
-            let Some(half_edge) = self.editable([a, b], options) else { continue };
-            let twin = self.surface.topology.twin(half_edge);
-            // What was inserted goes first.
-            let mut ways = [half_edge, twin];
-            ways.sort_by_key(|&way| {
-                std::cmp::Reverse(if way == isochore_mesh::NONE { 0 } else { self.surface.topology.start(way) })
-            });
-            let Some(way) = ways.into_iter().find(|&way| self.is_harmless(way, limits)) else { continue };
-            let removed = self.surface.topology.start(way);
-            self.edited.extend(self.surface.topology.fan(removed).map(|leaving| leaving / 3));
-            let gained = self.surface.collapse(way);
-            self.stroke.remeshing.add(gained);
-            self.stroke.remeshed += gained.abs();
-            self.done.removed_vertices += 1;
+            };
+            let removed = self.surface.topology.start(half_edge);
+            collapses.triangles.extend(self.surface.topology.fan(removed).map(|outgoing| outgoing / 3));
+            collapses.volumes.push(self.surface.collapse(half_edge));
         }
+        collapses
     }
 
-    /// Whether the start of a half-edge can be merged into its end without a fold, a seam torn, or an edge that is too long.
-    fn is_harmless(&self, half_edge: u32, limits: &Limits) -> bool {
-        if half_edge == isochore_mesh::NONE {
+    fn is_squeezed(&self, ends: [u32; 2]) -> bool {
+        let length2 = |ends: [DVec3; 2]| ends[0].distance_squared(ends[1]);
+        let now = length2(ends.map(|vertex| self.surface.position(vertex)));
+        let before = length2(ends.map(|vertex| self.surface.base(vertex)));
+        now < self.limits.shortest2 && now < SQUEEZED * SQUEEZED * before
+    }
+
+    /// The half-edge whose start can be merged into its end. Inserted vertices, which have larger
+    /// numbers, are removed first.
+    fn harmless_collapse(&self, ends: [u32; 2]) -> Option<u32> {
+        let half_edge = self.editable(ends)?;
+        let topology = &self.surface.topology;
+        let mut directions = [half_edge, topology.twin(half_edge)];
+        directions.sort_by_key(|&half_edge| Reverse(if half_edge == NONE { 0 } else { topology.start(half_edge) }));
+        directions.into_iter().find(|&half_edge| self.is_harmless(half_edge))
+    }
+
+    /// Whether the start of a half-edge can be merged into its end without a fold, a torn seam, or
+    /// an edge that is too long.
+    fn is_harmless(&self, half_edge: u32) -> bool {
+        if half_edge == NONE {
             return false;
         }
         let surface = &*self.surface;
@@ -59,8 +86,9 @@ impl Pass<'_> {
         if self.mask.is_some_and(|mask| mask.is_held(old)) {
             return false;
         }
-        topology.fan(removed).all(|leaving| {
-            let [b, c] = [topology.end(leaving), topology.start(previous_half_edge(leaving))];
+        topology.fan(removed).all(|outgoing| {
+            let [b, c] = [topology.end(outgoing), topology.start(previous_half_edge(outgoing))];
+            // The two triangles at the edge vanish.
             if b == kept || c == kept {
                 return true;
             }
@@ -68,7 +96,8 @@ impl Pass<'_> {
             let normal = |a: DVec3| (b - a).cross(c - a);
             let (before, after) = (normal(old), normal(new));
             let is_upright = before.dot(after) > MOST_TURN * before.length() * after.length();
-            is_upright && new.distance_squared(b) <= limits.longest2 && new.distance_squared(c) <= limits.longest2
+            let longest2 = self.limits.longest2;
+            is_upright && new.distance_squared(b) <= longest2 && new.distance_squared(c) <= longest2
         })
     }
 }

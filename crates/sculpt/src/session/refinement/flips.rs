@@ -1,56 +1,70 @@
+//! Flips of edges between badly shaped triangles.
+
 use glam::DVec3;
 use isochore_mesh::previous_half_edge;
 
-use super::{InteractiveRefinement, Limits, Pass};
+use super::{edits::Edits, pass::Pass};
 
-/// A triangle is looked at when the square of its longest side is this multiple of the sum of the others': with equal short sides,
-/// an angle of 120°. Nearer to one, meshes with good triangles are cut anew wherever a tool passes; larger leaves slivers.
-pub(super) const OBTUSE: f64 = 1.5;
-
-/// Cosine of the angle between two triangles that may exchange their edge. Larger refuses curved surface; smaller digs into creases.
+/// Cosine of the angle between two triangles that may exchange their edge. Larger refuses curved
+/// surface; smaller digs into creases.
 const FLAT: f64 = 0.95;
 
-/// By how much the [shape](shape) of the worse triangle must become better. Nearer to one, edges flip to and fro with every move of a
-/// brush that rubs; larger leaves slivers.
+/// Factor by which a flip must improve the [shape](shape) of the worse triangle. Nearer to one,
+/// edges flip to and fro with every move of a brush that rubs; larger leaves slivers.
 pub(super) const FOR_SHAPE: f64 = 1.6;
 
-/// The same for an edge that is too long, which cannot come back before the flow makes it short again: any gain will do. Larger
-/// splits where a flip would have done; smaller makes slivers.
+/// The same factor for an edge that is too long. It cannot flip back before the flow makes it short
+/// again, so any gain suffices. Larger splits edges that a flip would have fixed; smaller makes
+/// slivers.
 pub(super) const FOR_LENGTH: f64 = 1.0;
 
-/// Area of a triangle over the sum of the squares of its sides: largest where these are equal, zero where it is flat (R. Bank,
-/// *PLTMG*, 1998, section 2.2, up to a factor). No number for a point.
+/// Area of a triangle over the sum of its squared sides: largest if they are equal, zero if it is
+/// flat, NaN for a point (R. Bank, *PLTMG*, 1998, section 2.2, up to a factor).
 fn shape([a, b, c]: [DVec3; 3]) -> f64 {
     let sides = a.distance_squared(b) + b.distance_squared(c) + c.distance_squared(a);
     0.5 * (b - a).cross(c - a).length() / sides
 }
 
+/// Result of flipping edges.
+#[derive(Debug, Default)]
+pub(super) struct Flips {
+    /// The two triangles at each flipped edge.
+    pub(super) triangles: Vec<u32>,
+    /// Volume that each flip adds.
+    pub(super) volumes: Vec<f64>,
+}
+
+impl From<Flips> for Edits {
+    fn from(flips: Flips) -> Self {
+        Self {
+            triangles: flips.triangles,
+            flipped_edges: flips.volumes.len(),
+            remeshing_volumes: flips.volumes,
+            ..Self::default()
+        }
+    }
+}
+
 impl Pass<'_> {
-    /// Turns edges where that makes better triangles of the two, by the factor `worthwhile` at least.
-    pub(super) fn flip(
-        &mut self,
-        mut edges: Vec<[u32; 2]>,
-        worthwhile: f64,
-        options: &InteractiveRefinement,
-        limits: &Limits,
-    ) {
+    /// Flips those edges that improve the worse of their two triangles by more than the factor
+    /// `worthwhile`.
+    pub(super) fn flip(&mut self, mut edges: Vec<[u32; 2]>, worthwhile: f64) -> Flips {
+        let mut flips = Flips::default();
         edges.sort_unstable();
         edges.dedup();
         for edge in edges {
-            let Some(half_edge) = self.editable(edge, options) else { continue };
-            if !self.is_better_flipped(half_edge, worthwhile, limits) {
+            let Some(half_edge) = self.editable(edge) else { continue };
+            if !self.is_better_flipped(half_edge, worthwhile) {
                 continue;
             }
             let triangles = [half_edge / 3, self.surface.topology.twin(half_edge) / 3];
-            let gained = self.surface.flip(half_edge);
-            self.stroke.remeshing.add(gained);
-            self.stroke.remeshed += gained.abs();
-            self.edited.extend(triangles);
-            self.done.flipped_edges += 1;
+            flips.volumes.push(self.surface.flip(half_edge));
+            flips.triangles.extend(triangles);
         }
+        flips
     }
 
-    fn is_better_flipped(&self, half_edge: u32, worthwhile: f64, limits: &Limits) -> bool {
+    fn is_better_flipped(&self, half_edge: u32, worthwhile: f64) -> bool {
         let surface = &*self.surface;
         let topology = &surface.topology;
         if !(surface.is_seamless(half_edge) && topology.can_flip(half_edge)) {
@@ -60,7 +74,7 @@ impl Pass<'_> {
         let [a, b] = [half_edge, twin].map(|side| surface.position(topology.start(side)));
         let [c, d] = [half_edge, twin].map(|side| surface.position(topology.start(previous_half_edge(side))));
         let is_frozen = |side: u32| surface.is_frozen(topology.start(previous_half_edge(side)));
-        if c.distance_squared(d) > limits.longest2 || is_frozen(half_edge) || is_frozen(twin) {
+        if c.distance_squared(d) > self.limits.longest2 || is_frozen(half_edge) || is_frozen(twin) {
             return false;
         }
         let (before, after) = ([[a, b, c], [b, a, d]], [[a, d, c], [b, c, d]]);

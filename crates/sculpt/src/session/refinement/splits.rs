@@ -1,77 +1,116 @@
-use super::{InteractiveRefinement, Limits, MayTouch, Pass, survey};
+//! Splits of long edges.
 
-/// Rounds of splitting in one pass: each halves what is too long, so this many resolve edges a thousand times too long. What is
-/// left then is split by the next move.
+use glam::DVec3;
+
+use super::{
+    edits::Edits,
+    pass::Pass,
+    survey::{Limits, MayTouch, survey},
+};
+
+/// Rounds of splitting in one pass. Each halves the long edges, so ten rounds resolve edges a
+/// thousand times too long. The next move splits the rest.
 const MAX_ROUNDS: usize = 10;
 
-/// How many times over one stroke halves what it has moved. Larger follows the flow farther where it stirs without end, as at the rim
-/// of a core that goes through the surface, where each time may double the triangles; smaller leaves deep pulls coarse.
+/// How many times one stroke may halve an edge whose ends it has moved. Larger follows the flow
+/// farther where it stirs without end, as at the rim of a core that crosses the surface, where each
+/// halving may double the triangles; smaller leaves deep pulls coarse.
 const MOST_HALVINGS: u8 = 4;
 
+/// Result of splitting edges.
+#[derive(Debug, Default)]
+pub(super) struct Splits {
+    /// Triangles at the inserted vertices.
+    pub(super) triangles: Vec<u32>,
+    /// Volume that each inserted vertex adds.
+    pub(super) volumes: Vec<f64>,
+    /// Whether the limit on triangles prevented splits.
+    pub(super) is_limited: bool,
+    /// Long edges that are not split because they were halved too often.
+    pub(super) refused: usize,
+    /// Evaluations of the field.
+    pub(super) evaluations: u64,
+}
+
+impl From<Splits> for Edits {
+    fn from(splits: Splits) -> Self {
+        Self {
+            triangles: splits.triangles,
+            split_volumes: splits.volumes,
+            is_limited: splits.is_limited,
+            refused_splits: splits.refused,
+            evaluations: splits.evaluations,
+            ..Self::default()
+        }
+    }
+}
+
 impl Pass<'_> {
-    /// Splits edges that are too long, longest first, and goes on with what that leaves.
+    /// Splits long edges, longest first, and then the long edges that this leaves, up to
+    /// [`MAX_ROUNDS`] times.
     ///
-    /// A new vertex lies in the middle of the edge on the surface as it stood when the stroke began, and is carried from there
-    /// through all that the stroke did: it is where the flow takes that point, not in the middle of the ends.
+    /// A new vertex starts in the middle of the edge on the surface at the beginning of the stroke.
+    /// It is advected through all moves of the stroke so far, and so it is the image of that point
+    /// and not the midpoint of the deformed edge.
     ///
-    /// Where the stroke stirs the surface, that would never end: then edges stay, and the receipt tells how many.
-    pub(super) fn split(
-        &mut self,
-        mut long: Vec<(f64, [u32; 2])>,
-        options: &InteractiveRefinement,
-        limits: &Limits,
-        may_touch: Option<MayTouch<'_>>,
-    ) {
+    /// If the stroke stirs the surface, edges would be split without end. After [`MOST_HALVINGS`]
+    /// an edge is refused instead.
+    pub(super) fn split(&mut self, mut long: Vec<(f64, [u32; 2])>, may_touch: Option<MayTouch<'_>>) -> Splits {
+        let mut splits = Splits::default();
         let mut refused = Vec::new();
         for _ in 0..MAX_ROUNDS {
             long.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             long.dedup_by_key(|(_, edge)| *edge);
-            long.retain(|&(_, edge)| self.editable(edge, options).is_some());
-            long.retain(|(_, ends)| {
-                let helps = self.halvings(*ends) <= MOST_HALVINGS;
-                if !helps {
-                    refused.push(*ends);
-                }
-                helps
-            });
-            let room = limits.max_triangles.saturating_sub(self.surface.topology.alive()) / 2;
-            self.done.is_limited |= long.len() > room;
-            long.truncate(room);
+            long.retain(|&(_, edge)| self.editable(edge).is_some());
+            refused.extend(long.extract_if(.., |(_, ends)| self.halvings(*ends) > MOST_HALVINGS).map(|(_, ends)| ends));
+            // A split adds two triangles.
+            let capacity = self.limits.max_triangles.saturating_sub(self.surface.topology.alive()) / 2;
+            splits.is_limited |= long.len() > capacity;
+            long.truncate(capacity);
             if long.is_empty() {
                 break;
             }
-            let base = |&(_, ends): &(f64, [u32; 2])| {
-                let [a, b] = ends.map(|vertex| self.surface.base(vertex));
-                0.5 * (a + b)
-            };
-            let bases: Vec<_> = long.iter().map(base).collect();
-            let mut images = bases.clone();
-            self.done.evaluations += self.stroke.advect(&mut images);
-
-            let known = self.edited.len();
-            for ((&(_, ends), base), image) in long.iter().zip(bases).zip(images) {
-                // Other splits of this round leave the edge as it is. A point that is carried out of the range of numbers is none.
-                let Some(half_edge) = self.editable(ends, options).filter(|_| image.is_finite()) else { continue };
-                let halvings = self.halvings(ends);
-                let (split, gained) = self.surface.split(half_edge, image);
-                self.surface.inserted.push(split.vertex, base, halvings);
-                self.stroke.splits.add(gained);
-                self.edited.extend(split.near.into_iter().chain(split.far.into_iter().flatten()));
-                self.done.inserted_vertices += 1;
-            }
-            let edited = self.edited[known..].to_vec();
-            let again = Limits { shortest2: 0.0, flip: false, ..*limits };
-            long = survey(self.surface, &edited, &again, may_touch).long;
+            let round = self.split_once(&long);
+            let only_long = Limits { shortest2: 0.0, flip: false, ..self.limits };
+            long = survey(self.surface, &round.triangles, &only_long, may_touch).long;
+            splits.triangles.extend(round.triangles);
+            splits.volumes.extend(round.volumes);
+            splits.evaluations += round.evaluations;
         }
         refused.sort_unstable();
         refused.dedup();
-        self.done.refused_splits = self.done.refused_splits.max(refused.len());
+        splits.refused = refused.len();
+        splits
     }
 
-    /// How many times a vertex between two others would be one of halving what the stroke has moved.
+    /// Splits each of the edges `long`, unless another split of this round has changed it.
+    fn split_once(&mut self, long: &[(f64, [u32; 2])]) -> Splits {
+        let mut splits = Splits::default();
+        let bases: Vec<DVec3> = long.iter().map(|&(_, ends)| self.base_midpoint(ends)).collect();
+        let mut images = bases.clone();
+        splits.evaluations = self.stroke.advect(&mut images);
+        for ((&(_, ends), base), image) in long.iter().zip(bases).zip(images) {
+            // An image that overflows cannot be inserted.
+            let Some(half_edge) = self.editable(ends).filter(|_| image.is_finite()) else { continue };
+            let halvings = self.halvings(ends);
+            let (split, volume) = self.surface.split(half_edge, image);
+            self.surface.inserted.push(split.vertex, base, halvings);
+            splits.volumes.push(volume);
+            splits.triangles.extend(split.near.into_iter().chain(split.far.into_iter().flatten()));
+        }
+        splits
+    }
+
+    /// Midpoint of an edge on the surface at the beginning of the stroke.
+    fn base_midpoint(&self, ends: [u32; 2]) -> DVec3 {
+        let [a, b] = ends.map(|vertex| self.surface.base(vertex));
+        0.5 * (a + b)
+    }
+
+    /// Number of halvings of a vertex inserted between two others.
     fn halvings(&self, ends: [u32; 2]) -> u8 {
         let has_moved = ends.iter().any(|&end| self.surface.base(end) != self.surface.position(end));
-        let [one, other] = ends.map(|end| self.surface.halvings(end));
+        let [one, other] = ends.map(|end| self.surface.inserted.halvings(end));
         one.max(other) + u8::from(has_moved)
     }
 }

@@ -1,0 +1,50 @@
+//! The surface, the rules and the permission to edit, for all kinds of edits.
+
+use glam::DVec3;
+use isochore_field::Mask;
+use isochore_mesh::NONE;
+
+use super::survey::Limits;
+use crate::session::{InteractiveRefinement, stroke::ActiveStroke, surface::Surface};
+
+/// The surface to refine, and the rules. A pass edits only the surface; its result says what it
+/// did.
+pub(in crate::session) struct Pass<'a> {
+    pub(super) surface: &'a mut Surface,
+    pub(super) stroke: &'a ActiveStroke,
+    pub(super) mask: Option<&'a Mask>,
+    pub(super) options: &'a InteractiveRefinement,
+    pub(super) limits: Limits,
+}
+
+impl<'a> Pass<'a> {
+    pub(in crate::session) fn new(
+        surface: &'a mut Surface,
+        stroke: &'a ActiveStroke,
+        mask: Option<&'a Mask>,
+        options: &'a InteractiveRefinement,
+    ) -> Self {
+        Self { surface, stroke, mask, options, limits: options.limits(&stroke.tool) }
+    }
+
+    /// The half-edge between two vertices, or `None` if it does not exist, an end is frozen, or a
+    /// ball or the mask keeps the edge.
+    pub(super) fn editable(&self, [a, b]: [u32; 2]) -> Option<u32> {
+        let topology = &self.surface.topology;
+        let is_fixed = |vertex: u32| topology.outgoing(vertex) == NONE || self.surface.is_frozen(vertex);
+        if is_fixed(a) || is_fixed(b) {
+            return None;
+        }
+        let ends = [a, b].map(|vertex| self.surface.position(vertex));
+        if !self.options.keep.is_empty() && self.options.is_kept(ends) || is_held(self.mask, ends) {
+            return None;
+        }
+        // A boundary edge has a half-edge in one direction only.
+        topology.half_edge(a, b).or_else(|| topology.half_edge(b, a))
+    }
+}
+
+/// Whether a mask holds an edge: both ends and the midpoint.
+pub(super) fn is_held(mask: Option<&Mask>, [a, b]: [DVec3; 2]) -> bool {
+    mask.is_some_and(|mask| [a, b, 0.5 * (a + b)].iter().all(|&point| mask.is_held(point)))
+}
