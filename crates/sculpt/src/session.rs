@@ -15,8 +15,8 @@
 //!   [buffers](Session::buffers) contain render vertices.
 //! - The *origin* of a render vertex is the point of the mesh as opened that its attributes are
 //!   taken from.
-//! - The *log* is a [recipe](crate::Recipe) of all strokes, which can be [replayed](crate::replay)
-//!   on any mesh or point set.
+//! - The *log* is a [recipe](crate::Recipe) of all strokes, which can be
+//!   [replayed](crate::replay()) on any mesh or point set.
 //!
 //! ```
 //! use std::sync::Arc;

@@ -75,7 +75,7 @@ impl Session {
     /// included.
     ///
     /// Keys are recorded exactly as they were given to [`move_to_key`](Self::move_to_key). A
-    /// [replay](crate::replay), also of [points](crate::replay_points), moves the vertices of the
+    /// [replay](crate::replay()), also of [points](crate::replay_points), moves the vertices of the
     /// mesh as opened to the same bits as [`positions`](Self::positions), provided that no lock
     /// acts and no time step is halved. The recipe enables the lock if the session has one, so that
     /// a replay keeps the volume that the host has seen.

@@ -9,7 +9,7 @@ use super::{edits::Edits, pass::Pass};
 /// surface; smaller digs into creases.
 const FLAT: f64 = 0.95;
 
-/// Factor by which a flip must improve the [shape](shape) of the worse triangle. Nearer to one,
+/// Factor by which a flip must improve the [`shape`] of the worse triangle. Nearer to one,
 /// edges flip to and fro with every move of a brush that rubs; larger leaves slivers.
 pub(super) const FOR_SHAPE: f64 = 1.6;
 
