@@ -38,7 +38,7 @@ struct PatchFile {
     segment: usize,
     /// Index of the curve of the cross-section.
     side: usize,
-    /// Control points [x, y, z, weight] in Cartesian coordinates; index [u][v].
+    /// Control points [x, y, z, weight] in Cartesian coordinates; indexed by u, then v.
     control_points: Vec<Vec<[f64; 4]>>,
 }
 
