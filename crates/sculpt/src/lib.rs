@@ -46,7 +46,3 @@ pub use replay::{Replay, ReplayError, replay};
 pub use report::{Bounds, Measures, Report, Seconds, Source, StrokeReport};
 pub use scene::{BuildToolError, Meshes, Scene, SceneError, build_tool};
 pub use stream_report::{StreamReport, StreamSeconds};
-
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;
