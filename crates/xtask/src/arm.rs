@@ -1,4 +1,4 @@
-//! The command for ARM, whose vectors are of another kind, under an emulator: it has to write the same bytes.
+//! The command for ARM, which uses other SIMD kernels, under an emulator. It must write the same bytes.
 
 use std::{fs, process::Command};
 
@@ -10,7 +10,7 @@ use crate::{
 const TRIPLE: &str = "aarch64-unknown-linux-gnu";
 const LINKER: &str = "aarch64-linux-gnu-gcc";
 
-/// One with an analytic tool and one with a sampled one, which between them run all kernels that are compiled for several widths.
+/// Recipes with an analytic and with a sampled tool. Together they run all kernels that are compiled for several vector widths.
 const RECIPES: [&str; 2] = ["sphere", "knight"];
 
 /// Runs recipes natively and emulated, and compares the files.

@@ -1,17 +1,29 @@
-//! Runs the programs of `bench`, and writes what they compare into the README.
+//! Runs the programs of `bench`, and writes their comparisons into `bench/RESULTS.md` and the README.
 
 use std::{fmt::Write as _, fs, path::Path, process::Command};
 
 use serde_json::Value;
 
-use crate::shell::{TaskResult, cargo, run, target, workspace};
+use crate::{
+    marked_table::Markers,
+    shell::{TaskResult, cargo, run, target, workspace},
+};
 
-/// Between these lines of the README stands the table.
-const MARKERS: [&str; 2] = ["<!-- speed: written by cargo xtask bench -->\n", "<!-- end of speed -->\n"];
+/// The rows of the README: words of the job, and the start of the peer's name.
+const HEADLINES: [([&str; 2], &str); 8] = [
+    (["128 cells", "on one core"], "parry3d 0"),
+    (["128 cells", "on one core"], "Open3D"),
+    (["64 cells, with preparation", "1124k"], "Warp"),
+    (["advect", "128³"], "Warp"),
+    (["self-intersection", "1310720 triangles"], "PyMeshLab"),
+    (["split", "2378010"], "manifold3d"),
+    (["reading OBJ", "327680 triangles"], "MeshLib"),
+    (["reading GLB", "327680 triangles"], "trimesh"),
+];
 
-/// Runs all programs, or those named on the command line, and writes the table of all that were run today.
+/// Runs all programs, or those named on the command line, and writes the tables of all rows measured today.
 ///
-/// Rows of earlier days are left out: programs, peers and machine may have changed since.
+/// Rows of earlier days are left out, because programs, peers or the machine may have changed since.
 pub(crate) fn measure_all() -> TaskResult {
     run(&mut cargo(&["build", "--release", "--locked", "--package", "isochore-bench", "--package", "isochore-cli"]))?;
     let today = output(Command::new("date").args(["-u", "+%F"]))?;
@@ -25,11 +37,32 @@ pub(crate) fn measure_all() -> TaskResult {
         }
         run(Command::new(target().join("release").join(&program)).env("ISOCHORE_BENCH_ROWS", rows))?;
     }
-    let table = format!("{}\n{}", table(&rows_of(&folder)?)?, measured_on(&today)?);
-    let readme = workspace().join("README.md");
-    let text = fs::read_to_string(&readme)?;
-    fs::write(readme, between_markers(&text, &table)?)?;
-    Ok(())
+    let rows = rows_of(&folder)?;
+    let measured_on = measured_on(&today)?;
+    let markers = Markers::new("speed", "cargo xtask bench");
+    let all = format!("{}\n{measured_on}", table(&rows)?);
+    markers.write_into(&workspace().join("bench/RESULTS.md"), all.trim_end())?;
+    match HEADLINES.iter().map(|(job, peer)| headline(&rows, job, peer)).collect::<TaskResult<Vec<Value>>>() {
+        Ok(headlines) => {
+            let few = format!("{}\n{measured_on}", table(&headlines)?);
+            markers.write_into(&workspace().join("README.md"), few.trim_end())
+        }
+        Err(missing) => {
+            eprintln!("the README keeps its rows: {missing}");
+            Ok(())
+        }
+    }
+}
+
+/// The first row whose job holds both words and whose peer begins with `peer`.
+fn headline(rows: &[Value], words: &[&str; 2], peer: &str) -> TaskResult<Value> {
+    let job_holds = |row: &Value, word: &str| row["job"].as_str().is_some_and(|job| job.contains(word));
+    let is_it = |row: &&Value| {
+        words.iter().all(|word| job_holds(row, word)) && row["peer"].as_str().is_some_and(|name| name.starts_with(peer))
+    };
+    let row = rows.iter().find(is_it);
+    row.cloned()
+        .ok_or_else(|| format!("no row of today compares `{}` with {peer}; run all programs", words.join(" … ")).into())
 }
 
 /// Names of the programs: each is a file or a folder.
@@ -58,18 +91,17 @@ fn rows_of(folder: &Path) -> TaskResult<Vec<Value>> {
     Ok(rows)
 }
 
-/// The table in Markdown; a job that several peers do is named once, with all of them below it.
+/// The table in Markdown. Rows of one job follow each other, and only the first of them names it.
 fn table(rows: &[Value]) -> TaskResult<String> {
     let first_of_job = |row: &&Value| rows.iter().position(|other| other["job"] == row["job"]);
     let mut rows: Vec<&Value> = rows.iter().collect();
     rows.sort_by_key(first_of_job);
-    let mut table = String::from(
-        "| job | peer | unit | isochore | peer's | ratio | accuracy |\n|---|---|---|---:|---:|---:|---|\n",
-    );
+    let mut table =
+        String::from("| job | peer | unit | isochore | peer | ratio | accuracy |\n|---|---|---|---:|---:|---:|---|\n");
     let mut last = "";
     for row in rows {
-        let word = |key: &str| row[key].as_str().ok_or_else(|| format!("a row without {key}: {row}"));
-        let number = |key: &str| row[key].as_f64().ok_or_else(|| format!("a row without {key}: {row}"));
+        let word = |key: &str| row[key].as_str().ok_or_else(|| format!("{key} is missing in the row {row}"));
+        let number = |key: &str| row[key].as_f64().ok_or_else(|| format!("{key} is missing in the row {row}"));
         let (ours, theirs) = (number("ours")?, number("theirs")?);
         let job = word("job")?;
         writeln!(
@@ -88,13 +120,13 @@ fn table(rows: &[Value]) -> TaskResult<String> {
     Ok(table)
 }
 
-/// A positive number with three digits that count, or all digits before the point.
+/// A positive number with three significant digits, or with all digits before the decimal point.
 fn three_digits(value: f64) -> String {
     let before_point = if value > 0.0 { value.log10().floor() as i32 + 1 } else { 1 };
     format!("{value:.*}", (3 - before_point).clamp(0, 9) as usize)
 }
 
-/// The line below the table: when, on what, built by what.
+/// The line below the table: date, machine and compiler.
 fn measured_on(today: &str) -> TaskResult<String> {
     let processors = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = processors.lines().find_map(|line| line.strip_prefix("model name")?.split(": ").nth(1));
@@ -110,34 +142,18 @@ fn output(command: &mut Command) -> TaskResult<String> {
     Ok(String::from_utf8(output.stdout)?.trim().to_owned())
 }
 
-fn between_markers(text: &str, table: &str) -> TaskResult<String> {
-    let [begin, end] = MARKERS;
-    let (before, rest) = text.split_once(begin).ok_or_else(|| format!("the README has no line {begin}"))?;
-    let (_, after) = rest.split_once(end).ok_or_else(|| format!("the README has no line {end}"))?;
-    Ok(format!("{before}{begin}\n{table}\n{end}{after}"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn the_table_stands_between_the_markers_however_often_it_is_written() {
-        let readme = fs::read_to_string(workspace().join("README.md")).unwrap();
-        let once = between_markers(&readme, "one\n").unwrap();
-        assert!(once.contains("\none\n"));
-        assert_eq!(between_markers(&once, "two\n").unwrap(), between_markers(&readme, "two\n").unwrap());
-        assert!(between_markers("no markers", "one").is_err());
-    }
-
-    #[test]
-    fn numbers_have_three_digits() {
+    fn numbers_have_three_significant_digits() {
         let shown = [0.0123456, 0.5, 9.994, 12.34, 123.4, 98_765.4].map(three_digits);
         assert_eq!(shown, ["0.0123", "0.500", "9.99", "12.3", "123", "98765"]);
     }
 
     #[test]
-    fn a_job_is_named_once() {
+    fn only_the_first_row_of_a_job_names_it() {
         let row = |job: &str, peer: &str| serde_json::json!({ "job": job, "peer": peer, "unit": "ms", "ours": 2.0, "theirs": 3.0, "accuracy": "1 | 2" });
         let table = table(&[row("a", "p"), row("b", "p"), row("a", "q")]).unwrap();
         let lines: Vec<&str> = table.lines().skip(2).collect();
@@ -150,5 +166,14 @@ mod tests {
             ]
         );
         assert!(super::table(&[serde_json::json!({})]).is_err());
+    }
+
+    #[test]
+    fn a_headline_is_found_by_its_job_and_peer() {
+        let row = |job: &str, peer: &str| serde_json::json!({ "job": job, "peer": peer });
+        let rows =
+            [row("a grid of 64 cells", "p 1"), row("a grid of 128 cells", "q 1"), row("a grid of 128 cells", "p 1")];
+        assert_eq!(headline(&rows, &["grid", "128"], "p").unwrap(), rows[2]);
+        assert!(headline(&rows, &["grid", "256"], "p").is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! The package for browsers: built, and tried in a browser without a window.
+//! The JavaScript package: built, and tested in a headless browser.
 
 #[cfg(feature = "browser")]
 mod package;
@@ -14,7 +14,7 @@ use crate::{
     shell::{TaskResult, cargo, run, target, workspace},
 };
 
-/// The recipe that has to give the same bytes in the browser as natively, and the mesh that it names.
+/// The recipe that must give the same bytes in the browser as natively, and its mesh.
 const RECIPE: &str = "data/recipes/sphere.toml";
 const MESH: &str = "data/planet.obj";
 
@@ -24,11 +24,11 @@ pub(crate) fn build() -> TaskResult {
 }
 
 #[cfg(feature = "browser")]
-use package::build_in;
+pub(crate) use package::build_in;
 
-/// Lets a task runner do it that was compiled with what makes bindings, which nothing else needs.
+/// Delegates to a task runner that is compiled with the bindings generator, which no other task needs.
 #[cfg(not(feature = "browser"))]
-fn build_in(folder: &Path) -> TaskResult {
+pub(crate) fn build_in(folder: &Path) -> TaskResult {
     let runner = ["run", "--release", "--locked", "--quiet", "--package", "xtask", "--features", "browser"];
     run(cargo(&runner).args(["--", "browser"]).arg(std::path::absolute(folder)?))
 }
@@ -52,12 +52,12 @@ pub(crate) fn test_pages() -> TaskResult {
     Ok(())
 }
 
-/// What the pages are served from.
+/// The folder that the pages are served from.
 fn site() -> PathBuf {
     target().join("wasm/site")
 }
 
-/// Serves a folder to browsers of this machine.
+/// A server of one folder on the loopback interface.
 struct Server {
     process: Child,
     port: u16,
@@ -65,7 +65,7 @@ struct Server {
 
 impl Server {
     fn start(folder: &Path) -> TaskResult<Self> {
-        // Whatever port is free now.
+        // Any free port.
         let port = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
         let process = Command::new("python3")
             .args(["-m", "http.server", "--bind", "127.0.0.1", "--directory"])
@@ -75,16 +75,16 @@ impl Server {
             .stderr(Stdio::null())
             .spawn()?;
         let server = Self { process, port };
-        for _ in 0..100 {
+        for _ in 0..1200 {
             if std::net::TcpStream::connect(("127.0.0.1", port)).is_ok() {
                 return Ok(server);
             }
             std::thread::sleep(std::time::Duration::from_millis(100));
         }
-        Err("the server of the test pages does not answer".into())
+        Err("the server of the test pages does not respond".into())
     }
 
-    /// Opens a page and waits for what it says; the last line must be `done`.
+    /// Opens a page and waits for its log, whose last line must be `done`.
     fn open(&self, page: &str) -> TaskResult {
         let profile = target().join("wasm/profile");
         let quiet =

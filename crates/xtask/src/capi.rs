@@ -1,4 +1,4 @@
-//! The library for C: built, installed under a prefix and tried as its users would.
+//! The C library: built, installed under a prefix, and tested as its users would use it.
 
 use std::{
     fs,
@@ -11,11 +11,11 @@ use crate::{
     shell::{TaskResult, cargo, run, target, workspace},
 };
 
-/// Warnings are errors to users of headers who want it so.
+/// Flags that turn warnings in the header into errors.
 const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 
-/// Builds the library, and puts it with its header and its file for pkg-config under the prefix that the command line names, by
-/// default into the target folder.
+/// Builds the library and installs it with its header and its pkg-config file under the prefix given on the command line, by
+/// default the target folder.
 pub(crate) fn install() -> TaskResult {
     let prefix = std::env::args().nth(2).map_or_else(|| target().join("capi"), PathBuf::from);
     install_under(&prefix)
@@ -39,11 +39,11 @@ fn install_under(prefix: &Path) -> TaskResult {
     Ok(())
 }
 
-/// The example whose recipe the command carries out too, to the same bytes.
+/// The example whose recipe the command also runs, with the same bytes as a result.
 const PRESS: &str = "examples/press.c";
 
-/// Installs into the target folder, builds the examples and the tests with what pkg-config says, as C and as C++, and runs them, the tests
-/// also under valgrind.
+/// Installs into the target folder, builds the examples and tests with the flags of pkg-config, as C and as C++, and runs them.
+/// Tests also run under valgrind.
 pub(crate) fn test_programs() -> TaskResult {
     let prefix = target().join("capi");
     install_under(&prefix)?;
@@ -65,7 +65,7 @@ pub(crate) fn test_programs() -> TaskResult {
         let mesh = prefix.join("written.obj");
         run(Command::new(&program).arg(&mesh).env("LD_LIBRARY_PATH", prefix.join("lib")))?;
         if source == PRESS && fs::read(&mesh)? != expected {
-            return Err(format!("{source} by {compiler} writes other bytes than the command").into());
+            return Err(format!("{source} by {compiler} writes bytes that differ from the command's").into());
         }
         if is_test {
             debian::require("valgrind", &["valgrind"])?;
@@ -83,7 +83,7 @@ pub(crate) fn test_programs() -> TaskResult {
     Ok(())
 }
 
-/// What the command writes for the recipe of [`PRESS`], whose lines are those in quotes.
+/// The bytes that the command writes for the recipe in [`PRESS`], which consists of its quoted lines.
 fn pressed_by_command(folder: &Path) -> TaskResult<Vec<u8>> {
     let source = fs::read_to_string(workspace().join("crates/capi").join(PRESS))?;
     let lines = source.lines().filter_map(|line| line.trim().strip_prefix('"')?.split("\\n\"").next());
@@ -94,7 +94,7 @@ fn pressed_by_command(folder: &Path) -> TaskResult<Vec<u8>> {
     Ok(fs::read(mesh)?)
 }
 
-/// What pkg-config tells compilers; where it is missing, what it would tell.
+/// The compiler flags of pkg-config, or the same flags written out if pkg-config is not installed.
 fn pkg_config_flags(prefix: &Path) -> TaskResult<Vec<String>> {
     let asked = Command::new("pkg-config")
         .args(["--cflags", "--libs", "isochore"])

@@ -1,4 +1,4 @@
-//! Compiling for machines other than this one.
+//! Cross-compilation.
 
 use std::{
     path::{Path, PathBuf},
@@ -10,11 +10,11 @@ use crate::{
     shell::{TaskResult, cargo, run, target, workspace},
 };
 
-/// Debian's compiler, for targets that rustup has not to give.
+/// Debian's compiler, for targets that rustup cannot provide.
 const DEBIAN_PACKAGES: [&str; 5] = ["rustc-web", "cargo-web", "rust-web-src", "rust-web-llvm", "lld-22"];
 
-/// Builds a package for another target, by rustup's libraries where they are there or can be fetched, else by Debian's compiler, which
-/// makes them too. The folder with what was built.
+/// Builds a package for another target and returns the folder with the results. Uses rustup's standard library if it is installed or
+/// can be fetched, and otherwise Debian's compiler, which builds the standard library too.
 pub(crate) fn build(package: &str, triple: &str, environment: (&str, &str)) -> TaskResult<PathBuf> {
     let folder = target().join("cross");
     let arguments = ["build", "--release", "--locked", "--package", package, "--target", triple, "--target-dir"];
@@ -24,7 +24,7 @@ pub(crate) fn build(package: &str, triple: &str, environment: (&str, &str)) -> T
         install_from_debian()?;
         let mut debian = Command::new("/usr/bin/cargo");
         debian.args(arguments).arg(&folder).arg("-Zbuild-std=std,panic_abort").current_dir(workspace());
-        // The standard library is compiled along, which takes flags that a stable compiler has locked.
+        // Building the standard library needs unstable flags, which a stable compiler accepts only with this variable.
         debian.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1").env("CARGO_PROFILE_RELEASE_PANIC", "abort");
         run(debian.env(environment.0, environment.1).env_remove("RUSTUP_TOOLCHAIN"))?;
     }

@@ -1,4 +1,4 @@
-//! `cargo xtask data`: makes the meshes of the folder `data` and its README.
+//! `cargo xtask data`: generates the meshes of the folder `data` and its README.
 
 mod chess;
 mod coin;
@@ -233,7 +233,7 @@ mod tests {
                 |triangle| mesh.triangle_angles(triangle).into_iter().fold(f64::INFINITY, f64::min).to_degrees();
             let angles: Vec<f64> = (0..mesh.triangles.len()).map(sharpest).collect();
             let below = |limit: f64| angles.iter().filter(|&&angle| angle < limit).count();
-            // What a target needs in order to bend well: no slivers at all, and hardly a triangle that is not stout.
+            // Targets bend well if they have no slivers and few thin triangles.
             assert_eq!(below(15.0), 0, "{name}");
             assert!(1000 * below(30.0) <= angles.len(), "{name}");
         }

@@ -1,10 +1,10 @@
-//! What only the system can install.
+//! System packages.
 
 use std::process::Command;
 
 use crate::shell::{TaskResult, run};
 
-/// Installs packages of Debian and its kin where the system lets us, and says how where it does not.
+/// Installs Debian packages. If the system does not allow it, the error names the command to run.
 pub(crate) fn install(packages: &[&str]) -> TaskResult {
     let install = || {
         run(Command::new("apt-get").args(["update", "--quiet"]))?;
@@ -17,7 +17,7 @@ pub(crate) fn install(packages: &[&str]) -> TaskResult {
     install().map_err(|error| format!("{error}; run: sudo apt-get install --yes {names}").into())
 }
 
-/// Installs the packages that bring `program` and what it needs, unless it is there.
+/// Installs the packages that provide `program`, unless it is already installed.
 pub(crate) fn require(program: &str, packages: &[&str]) -> TaskResult {
     match Command::new(program).arg("--version").output() {
         Ok(_) => Ok(()),

@@ -8,18 +8,18 @@ use std::{
 
 use crate::shell::{TaskResult, run, target};
 
-/// The interpreter of the environment `name`, which is made with `packages` where it is not there yet.
+/// The interpreter of the environment `name`, which is created with `packages` if it does not exist yet.
 pub(crate) fn interpreter(name: &str, packages: &[&str]) -> TaskResult<PathBuf> {
     let folder = target().join(name).join("environment");
     let python = folder.join("bin/python");
     let stamp = folder.join("installed.txt");
-    let wanted = packages.join("\n");
-    if fs::read_to_string(&stamp).is_ok_and(|installed| installed == wanted) {
+    let requested = packages.join("\n");
+    if fs::read_to_string(&stamp).is_ok_and(|installed| installed == requested) {
         return Ok(python);
     }
     run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;
     install(&python, packages)?;
-    fs::write(stamp, wanted)?;
+    fs::write(stamp, requested)?;
     Ok(python)
 }
 

@@ -1,19 +1,22 @@
-//! What is too heavy for every run of the tests: the sanitizer, an emulated ARM, a browser, and Blender.
+//! Checks that are too heavy for the test command: guide, packages, sanitizer, emulated ARM, browser and Blender.
 
 use std::process::Command;
 
 use crate::{
     arm, browser,
     environment::{install, interpreter},
-    sanitizer,
+    guide, package, sanitizer,
     shell::{TaskResult, run, workspace},
 };
 
 /// Blender as a Python module, at the last version for this Python.
 const BLENDER: [&str; 2] = ["bpy==5.0.1", "pytest==9.2.0"];
 
-/// Runs tests under the sanitizer, recipes on an emulated ARM, the tests in the browser and those of the Blender add-on.
+/// Builds the guide and all packages, then runs tests under the sanitizer, recipes on an emulated ARM, the tests in the
+/// browser and those of the Blender add-on.
 pub(crate) fn run_all() -> TaskResult {
+    guide::build()?;
+    package::check_all()?;
     sanitizer::run_tests()?;
     arm::compare_bytes()?;
     browser::test_pages()?;

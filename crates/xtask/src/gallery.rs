@@ -10,11 +10,11 @@ use std::{
 
 use crate::shell::{TaskResult, cargo, run, target, workspace};
 
-/// A figure of Zheng's thesis, and what shows the same here.
+/// A figure of Zheng's thesis, and the recipes and pictures that reproduce it.
 struct Figure {
     /// Its number in the thesis, or the section that describes it without one.
     number: &'static str,
-    /// What it shows, here.
+    /// Caption.
     shows: &'static str,
     /// Recipes of the folder `data/recipes` that deform for it.
     recipes: &'static [&'static str],
@@ -26,13 +26,13 @@ struct Figure {
 const DEFORMATIONS: [Figure; 18] = [
     Figure {
         number: "9.1",
-        shows: "A ball moves on through a surface, which closes behind it",
+        shows: "A ball moves through a surface, which closes behind it",
         recipes: &["region"],
         drawings: &[],
     },
     Figure {
         number: "11.2",
-        shows: "Field of a ball on a section: red inside, blue outside, green the ball's motion",
+        shows: "Field of a ball on a section: red inside, blue outside, green for the ball's motion",
         recipes: &["sphere"],
         drawings: &["field_sphere"],
     },
@@ -62,7 +62,7 @@ const DEFORMATIONS: [Figure; 18] = [
     },
     Figure {
         number: "11.7",
-        shows: "A shape, the reach of its field, and an offset surface within, cut open",
+        shows: "A shape, the support of its field, and an offset surface between them, cut open",
         recipes: &["knight"],
         drawings: &["shells_knight"],
     },
@@ -81,7 +81,7 @@ const DEFORMATIONS: [Figure; 18] = [
     },
     Figure {
         number: "12.2",
-        shows: "Reach of a field that depends on a radius, and of one that depends on the shape",
+        shows: "Support of a field that depends on a radius, and of one that depends on the shape",
         recipes: &["knight"],
         drawings: &["shells_reach"],
     },
@@ -129,7 +129,7 @@ const FRAMES: [(&str, &str); 11] = [
     ("moebius", "A rational curve with rational frames"),
 ];
 
-/// Runs all recipes and programs, and leaves meshes, pictures, reports and the page `gallery.md` in the folder `gallery`.
+/// Runs all recipes and programs, and writes meshes, pictures, reports and the page `gallery.md` into the folder `gallery`.
 pub(crate) fn draw_all() -> TaskResult {
     let folder = workspace().join("gallery");
     fs::create_dir_all(&folder)?;
@@ -156,11 +156,11 @@ fn programs() -> TaskResult<Vec<String>> {
 
 /// Runs a recipe with all its outputs in `folder`, where they are named after it.
 fn deform(recipe: &str, folder: &Path) -> TaskResult {
-    let place = |extension: &str| folder.join(recipe).with_extension(extension);
-    let preview = format!("output.preview={:?}", place("png").display().to_string());
+    let output = |extension: &str| folder.join(recipe).with_extension(extension);
+    let preview = format!("output.preview={:?}", output("png").display().to_string());
     let mut command = std::process::Command::new(target().join("release/isochore"));
     command.arg("run").arg(recipe_file(recipe)).args(["--quiet", "--set", &preview]);
-    run(command.arg("--output").arg(place("ply")).arg("--report").arg(place("json")))
+    run(command.arg("--output").arg(output("ply")).arg("--report").arg(output("json")))
 }
 
 fn recipe_file(recipe: &str) -> PathBuf {
@@ -168,12 +168,12 @@ fn recipe_file(recipe: &str) -> PathBuf {
 }
 
 #[test]
-fn every_figure_has_what_it_is_made_of() {
+fn every_figure_has_its_recipes() {
     for figure in &DEFORMATIONS {
         assert!(!figure.recipes.is_empty(), "{}", figure.number);
         for recipe in figure.recipes {
             assert!(recipe_file(recipe).is_file(), "{recipe}");
-            // Both leave a picture of that name in the same folder.
+            // Both write a picture of that name into the same folder.
             assert!(FRAMES.iter().all(|(name, _)| name != recipe) && !figure.drawings.contains(recipe), "{recipe}");
         }
     }

@@ -1,8 +1,8 @@
-//! Counts the instructions of the hot loops anew.
+//! Recounts the instructions of the hot loops.
 
 use crate::shell::{TaskResult, cargo, run};
 
-/// Writes `bench/instructions.json`, which a test compares with.
+/// Writes `bench/instructions.json`, the reference of a test.
 pub(crate) fn count_all() -> TaskResult {
     let mut test =
         cargo(&["test", "--workspace", "--no-default-features", "--locked", "--quiet", "--test", "instructions"]);

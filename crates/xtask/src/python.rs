@@ -1,4 +1,4 @@
-//! The Python package: built, installed and tested as its users would.
+//! The Python package: built, installed and tested as its users would use it.
 
 use std::process::Command;
 
@@ -7,7 +7,7 @@ use crate::{
     shell::{TaskResult, run, workspace},
 };
 
-/// What the tests need beside the package, at the versions that were tried.
+/// Packages that the tests need, at the versions that were tried.
 const PACKAGES: [&str; 5] = ["numpy==2.4.6", "pytest==9.2.0", "trimesh==5.2.0", "distributed==2026.8.0", "mypy==2.4.1"];
 
 /// Installs the package of the workspace, compares it with its stubs, and runs its tests and its example.

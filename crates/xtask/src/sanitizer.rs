@@ -1,17 +1,17 @@
-//! Unsafe code under AddressSanitizer: the kernels of distance grids, and sessions in ten thousand calls.
+//! Unsafe code under AddressSanitizer: the kernels of distance grids, and ten thousand calls of sessions.
 
 use crate::shell::{TaskResult, cargo, run, target};
 
-/// Where the compiler's own runtime of the sanitizer is at hand.
+/// A target for which the compiler ships the runtime of the sanitizer.
 const TARGET: &str = "x86_64-unknown-linux-gnu";
 
-/// Builds the tests of the crates at work below the bindings with the sanitizer and runs them.
+/// Builds the tests of the library crates with the sanitizer and runs them.
 ///
-/// What crosses the border to C is tried under valgrind by `cargo xtask test`, which also sees memory that nobody has written to.
+/// The C border is tested under valgrind by `cargo xtask test`, which also detects reads of uninitialized memory.
 pub(crate) fn run_tests() -> TaskResult {
     let packages = ["test", "--locked", "--quiet", "--package", "isochore-mesh", "--package", "isochore-sculpt"];
     let mut tests = cargo(&packages);
     tests.args(["--lib", "--test", "session", "--target", TARGET, "--target-dir"]).arg(target().join("sanitizer"));
-    // The sanitizer is a flag that a stable compiler has locked.
+    // A stable compiler accepts the unstable sanitizer flag only with this variable.
     run(tests.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Zsanitizer=address"))
 }

@@ -6,20 +6,23 @@ use std::{
     process::Command,
 };
 
-/// What every task returns: nothing, or one line that says what failed.
+/// Result of a task. The error is one line that says what failed.
 pub(crate) type TaskResult<T = ()> = Result<T, Box<dyn Error>>;
 
 /// The folder of the workspace.
 pub(crate) fn workspace() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the task runner lies two folders down")
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .nth(2)
+        .expect("the task runner is two folders below the workspace")
 }
 
-/// Where builds and all that tasks install or make go.
+/// The target folder, which holds builds and everything that tasks install or generate.
 pub(crate) fn target() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from)
 }
 
-/// Shows a command and runs it in the workspace; its failure is the error.
+/// Prints a command and runs it in the workspace. A failure of the command is an error.
 pub(crate) fn run(command: &mut Command) -> TaskResult {
     command.current_dir(workspace());
     let shown = format!("{command:?}").replace('"', "");

@@ -1,11 +1,11 @@
-//! How large the command is.
+//! The size of the command.
 
 use crate::shell::{TaskResult, cargo, run, target};
 
-/// Bytes that the command may have. Larger, and a dependency that doubles it goes unnoticed; smaller leaves no room to grow.
+/// Largest size of the command in bytes. A larger limit lets a dependency double it unnoticed; a smaller one leaves no margin.
 const MOST_BYTES: u64 = 15_000_000;
 
-/// Builds the command for release and fails where it is too large.
+/// Builds the command for release and fails if it is too large.
 pub(crate) fn check() -> TaskResult {
     run(&mut cargo(&["build", "--release", "--locked", "--quiet", "--package", "isochore-cli"]))?;
     let size = target().join("release").join(format!("isochore{}", std::env::consts::EXE_SUFFIX)).metadata()?.len();

@@ -1,23 +1,26 @@
-//! The package for browsers: the module compiled, what binds it to JavaScript, and what describes both.
+//! The JavaScript package: the compiled module, its bindings and its description.
 
 use std::{fs, path::Path};
 
-use serde_json::json;
+use serde_json::Value;
 use wasm_bindgen_cli_support::Bindgen;
 use wasmparser::{Parser, Payload};
 
-use crate::{cross, shell::TaskResult};
+use crate::{
+    cross,
+    shell::{TaskResult, workspace},
+};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Bytes that the module may have. Larger, and a dependency that doubles it goes unnoticed; smaller leaves no room to grow.
+/// Largest size of the module in bytes. A larger limit lets a dependency double it unnoticed; a smaller one leaves no margin.
 const MOST_BYTES: usize = 6_000_000;
 
-/// The byte that all instructions on vectors of 128 bits begin with (WebAssembly Core Specification 2.0, section 5.4.8).
+/// The first byte of all 128-bit SIMD instructions (WebAssembly Core Specification 2.0, section 5.4.8).
 const VECTOR_PREFIX: u8 = 0xfd;
 
-/// Builds the package in a folder, and fails where the module is too large or works on no vectors.
-pub(super) fn build_in(folder: &Path) -> TaskResult {
+/// Builds the package in a folder. Fails if the module is too large or uses no SIMD.
+pub(crate) fn build_in(folder: &Path) -> TaskResult {
     fs::create_dir_all(folder)?;
     let built = cross::build("isochore-wasm", TARGET, ("RUSTFLAGS", "-Ctarget-feature=+simd128"))?;
     Bindgen::new()
@@ -27,32 +30,29 @@ pub(super) fn build_in(folder: &Path) -> TaskResult {
         .typescript(true)
         .omit_default_module_path(false)
         .generate(folder)?;
-    let description = json!({
-        "name": "isochore",
-        "version": env!("CARGO_PKG_VERSION"),
-        "description": env!("CARGO_PKG_DESCRIPTION"),
-        "license": env!("CARGO_PKG_LICENSE"),
-        "type": "module",
-        "main": "isochore.js",
-        "types": "isochore.d.ts",
-        "files": ["isochore.js", "isochore.d.ts", "isochore_bg.wasm", "isochore_bg.wasm.d.ts"],
-    });
+    let source = workspace().join("crates/wasm");
+    let mut description: Value = serde_json::from_slice(&fs::read(source.join("package.json"))?)?;
+    description["version"] = env!("CARGO_PKG_VERSION").into();
+    fs::copy(source.join("README.md"), folder.join("README.md"))?;
+    for name in ["LICENSE-APACHE", "LICENSE-MIT"] {
+        fs::copy(workspace().join(name), folder.join(name))?;
+    }
     fs::write(folder.join("package.json"), serde_json::to_string_pretty(&description)?)?;
 
     let module = fs::read(folder.join("isochore_bg.wasm"))?;
     let vectors = vector_instructions(&module)?;
     eprintln!("the package is in {}", folder.display());
-    eprintln!("the module has {} bytes and {vectors} instructions on vectors of 128 bits", module.len());
+    eprintln!("the module has {} bytes and {vectors} instructions of 128-bit SIMD", module.len());
     if module.len() > MOST_BYTES {
-        return Err(format!("that is more than {MOST_BYTES} bytes").into());
+        return Err(format!("the limit is {MOST_BYTES} bytes").into());
     }
     if vectors == 0 {
-        return Err("it works on no vectors: was it compiled without the feature simd128?".into());
+        return Err("it has no SIMD instructions; was it compiled without the feature simd128?".into());
     }
     Ok(())
 }
 
-/// How many instructions of the module's functions work on vectors of 128 bits.
+/// Number of 128-bit SIMD instructions in the module's functions.
 fn vector_instructions(module: &[u8]) -> TaskResult<usize> {
     let mut count = 0;
     for payload in Parser::new(0).parse_all(module) {
@@ -69,7 +69,7 @@ fn vector_instructions(module: &[u8]) -> TaskResult<usize> {
 mod tests {
     use super::*;
 
-    /// A module of one function, whose body is `code`: the other sections say that it takes and gives nothing.
+    /// A module of one function, whose body is `code`: the other sections declare that it has no parameters and no results.
     fn module(code: &[u8]) -> Vec<u8> {
         let header = [0, b'a', b's', b'm', 1, 0, 0, 0, 1, 4, 1, 0x60, 0, 0, 3, 2, 1, 0];
         let size = code.len() as u8 + 2;
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn instructions_on_vectors_are_told_from_numbers_that_look_like_them() {
+    fn simd_instructions_are_distinguished_from_constants_with_the_same_byte() {
         // i32.const −3, which is written with the same byte, and drop.
         let constant = [0x41, 0xfd, 0x7f, 0x1a];
         assert_eq!(vector_instructions(&module(&constant)).unwrap(), 0);

@@ -42,9 +42,9 @@ pub(crate) fn rook(point: DVec3) -> f64 {
     difference(solid, union(well, union_of(gaps, 0.10), 0.10), 0.14)
 }
 
-/// A knight: the head of a horse that looks along x.
+/// A knight: the head of a horse that faces along x.
 pub(crate) fn knight(point: DVec3) -> f64 {
-    // Both sides at once: the head is its own mirror image.
+    // Both sides at once: the head is symmetric.
     let side = DVec3::new(point.x, point.y.abs(), point.z);
     // The horse is slimmer across than along.
     let slim = DVec3::new(point.x, 1.22 * point.y, point.z);

@@ -1,4 +1,4 @@
-//! A disc painted so that half a turn of its rim, by an angle that grows with the squared radius, makes it a Tai Chi sign.
+//! A disc whose colors form a Tai Chi sign once its rim turns by half a turn, with an angle that grows with the squared radius.
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,7 +13,7 @@ const LAYERS: usize = 4;
 
 const THICKNESS: f64 = 0.12;
 
-/// Radius of the dots, and how far their middles are from that of the disc.
+/// Radius of the dots, and distance of their centers from that of the disc.
 const DOT: (f64, f64) = (0.13, 0.5);
 
 const DARK: DVec4 = DVec4::new(0.02, 0.02, 0.025, 1.0);
@@ -25,7 +25,7 @@ pub(crate) fn disc() -> TriMesh {
     let half = 0.5 * THICKNESS;
     let top = face(&mut mesh, half);
     let bottom = face(&mut mesh, -half);
-    // The triangles of the second face look down.
+    // The triangles of the second face point down.
     let count = mesh.triangles.len();
     mesh.triangles[count / 2..].iter_mut().for_each(|triangle| triangle.swap(1, 2));
 
@@ -51,7 +51,7 @@ pub(crate) fn disc() -> TriMesh {
     mesh
 }
 
-/// Appends a face that looks up, and returns the first point of its outermost ring.
+/// Appends a face that points up, and returns the first point of its outermost ring.
 fn face(mesh: &mut TriMesh, height: f64) -> u32 {
     let middle = mesh.positions.len() as u32;
     mesh.positions.push(DVec3::Z * height);
@@ -85,7 +85,7 @@ fn ring(count: usize, height: f64) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Half and half, and in each half a dot of the other color that is round once the disc has turned.
+/// Two halves, each with a dot of the other color that becomes round once the disc has turned.
 fn color(position: DVec3) -> DVec4 {
     let plane = position.truncate();
     let (sine, cosine) = libm::sincos(PI * plane.length_squared());
@@ -93,7 +93,7 @@ fn color(position: DVec3) -> DVec4 {
     // At the dots' radius the disc turns by an eighth of a turn beyond the quarter at which they lie.
     let (sine, cosine) = libm::sincos(0.5 * PI + PI * DOT.1 * DOT.1);
     let dot = DOT.1 * DVec2::new(cosine, sine);
-    // Over the width of a triangle the colors run into each other, which makes outlines smooth.
+    // Colors blend over the width of a triangle, so that outlines are smooth.
     let width = 1.0 / RINGS as f64;
     let in_dot = |middle: DVec2| ((DOT.0 - turned.distance(middle)) / width + 0.5).clamp(0.0, 1.0);
     let half = (plane.y / width + 0.5).clamp(0.0, 1.0);

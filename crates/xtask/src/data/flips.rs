@@ -3,10 +3,10 @@
 use glam::DVec3;
 use isochore_mesh::TriMesh;
 
-/// Edges whose faces bend by more than this are features and stay (cosine of 40°).
+/// Edges with a dihedral angle above this are features and are kept (cosine of 40°).
 const FLATTEST_FEATURE: f64 = 0.766;
 
-/// Faces after a flip may turn from those before by this much at most (cosine of 45°). Smaller values let folds through.
+/// Largest rotation of a face normal by a flip (cosine of 45°). Smaller values let folds through.
 const MOST_TURN: f64 = 0.707;
 
 /// Smallest angle that a flip may make, as a cosine (15°).
@@ -15,7 +15,7 @@ const SHARPEST: f64 = 0.966;
 /// A mesh with its halfedges: halfedge `3 t + i` runs from corner `i` of triangle `t` to the next corner.
 pub(crate) struct Flips<'a> {
     mesh: &'a mut TriMesh,
-    /// The halfedge that runs the other way along the same edge.
+    /// The opposite halfedge of the same edge.
     twins: Vec<u32>,
     valences: Vec<u32>,
 }
@@ -29,7 +29,7 @@ struct Diamond {
 
 impl<'a> Flips<'a> {
     /// # Panics
-    /// If an edge does not have exactly two triangles: the grid is too coarse for the solid, or meets it in a bad place.
+    /// If an edge does not have exactly two triangles: the grid is too coarse for the solid, or badly aligned with it.
     pub(crate) fn of(mesh: &'a mut TriMesh) -> Self {
         let mut valences = vec![0; mesh.positions.len()];
         let mut edges: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * mesh.triangles.len());
@@ -50,7 +50,7 @@ impl<'a> Flips<'a> {
         Self { mesh, twins, valences }
     }
 
-    /// Flips where that brings valences nearer to six, in one pass over the edges.
+    /// Flips edges if that brings valences closer to six, in one pass over the edges.
     pub(crate) fn improve_valences(&mut self) {
         self.flip_where(|flips, diamond| {
             let [a, b, c, d] = diamond.vertices.map(|vertex| i64::from(flips.valences[vertex as usize]) - 6);
@@ -60,9 +60,9 @@ impl<'a> Flips<'a> {
         });
     }
 
-    /// Flips where the angles across an edge sum to more than half a turn, until there is no such edge left.
+    /// Flips edges whose opposite angles sum to more than 180°, until none remains.
     pub(crate) fn make_delaunay(&mut self) {
-        // Delaunay flips end; on a curved surface a few edges could still go back and forth.
+        // Delaunay flips terminate in the plane; on a curved surface a few edges could alternate forever.
         const MOST_PASSES: usize = 20;
         for _ in 0..MOST_PASSES {
             let flipped = self.flip_where(|flips, diamond| {
@@ -76,7 +76,7 @@ impl<'a> Flips<'a> {
         }
     }
 
-    /// Flips the edges that `is_wanted` names where the mesh stays sound; returns how many.
+    /// Flips the edges that `is_wanted` selects if the mesh stays valid, and returns their number.
     fn flip_where(&mut self, is_wanted: impl Fn(&Self, &Diamond) -> bool) -> usize {
         let mut flipped = 0;
         for halfedge in 0..self.twins.len() as u32 {
@@ -105,7 +105,7 @@ impl<'a> Flips<'a> {
         diamond.vertices.map(|vertex| self.mesh.positions[vertex as usize])
     }
 
-    /// Whether a flip keeps the mesh manifold, its features, and its faces unfolded.
+    /// Whether a flip keeps the mesh manifold, preserves features and folds no face.
     fn is_sound(&self, diamond: &Diamond) -> bool {
         let [a, b, c, d] = self.corners(diamond);
         let normal = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).normalize_or_zero();

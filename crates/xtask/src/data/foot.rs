@@ -1,4 +1,4 @@
-//! A right foot that stands on the plane z = 0, toes along y, big toe toward −x; the sole faces −z.
+//! A right foot on the plane z = 0, toes along y, big toe toward −x; the sole faces −z.
 
 use glam::DVec3;
 
@@ -45,7 +45,7 @@ pub(crate) fn foot(point: DVec3) -> f64 {
         ],
         0.12,
     );
-    // The outer edge stands on the ground, the arch on the inner side does not.
+    // The outer edge touches the ground, the arch on the inner side does not.
     let outer_edge = limb(point, [DVec3::new(0.24, 0.30, 0.14), DVec3::new(0.15, -0.75, 0.17)], [0.135, 0.165]);
     let instep = limb(point, [DVec3::new(-0.10, 0.42, 0.20), DVec3::new(0.0, -0.62, 0.48)], [0.17, 0.30]);
     let leg = limb(point, [DVec3::new(0.0, -0.72, 0.45), DVec3::new(0.0, -0.76, 1.4)], [0.28, 0.25]);

@@ -1,4 +1,4 @@
-//! A sitting hare that looks along x, z upward from the ground at 0.
+//! A sitting hare that faces along x, z upward from the ground at 0.
 
 use glam::DVec3;
 

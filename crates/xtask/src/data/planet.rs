@@ -19,7 +19,7 @@ const WAVES: [(DVec3, f64, f64); 10] = [
     (DVec3::new(8.8, -7.4, 5.1), 2.2, 0.14),
 ];
 
-/// Craters: direction of the middle, and radius as an angle in radians.
+/// Craters: direction of the center, and radius as an angle in radians.
 const CRATERS: [(DVec3, f64); 7] = [
     (DVec3::new(0.75, -0.60, 0.28), 0.26),
     (DVec3::new(-0.30, -0.90, -0.31), 0.19),
@@ -30,7 +30,7 @@ const CRATERS: [(DVec3, f64); 7] = [
     (DVec3::new(-0.52, -0.62, 0.58), 0.13),
 ];
 
-/// Height of the land, and of the ground that keeps it from being flat, as shares of the radius.
+/// Height of the land, and of the ground that keeps it from being flat, as fractions of the radius.
 const LAND: f64 = 0.030;
 const ROUGHNESS: f64 = 0.006;
 
@@ -55,7 +55,7 @@ fn radius(direction: DVec3) -> f64 {
     })
 }
 
-/// Height of a crater of radius one at a distance from its middle: a bowl, a rim at one, and a slope that ends at two.
+/// Height of a crater of radius one at a distance from its center: a bowl, a rim at one, and a slope that ends at two.
 fn crater(away: f64) -> f64 {
     if away >= 2.0 {
         0.0

@@ -7,14 +7,14 @@ use glam::{DVec2, DVec3};
 
 /// The union of two solids, blended with fillets where both surfaces are nearer than `width`.
 ///
-/// Cubic blend: twice continuously differentiable, never above the smaller distance by any amount, and equal to it where
+/// Cubic blend: twice continuously differentiable, never above the smaller distance, and equal to it where
 /// the distances differ by more than `width`.
 pub(crate) fn union(a: f64, b: f64, width: f64) -> f64 {
     let overlap = (width - (a - b).abs()).max(0.0) / width;
     a.min(b) - overlap * overlap * overlap * width / 6.0
 }
 
-/// What two solids have in common, its edges rounded over `width`.
+/// The intersection of two solids, its edges rounded over `width`.
 pub(crate) fn intersection(a: f64, b: f64, width: f64) -> f64 {
     -union(-a, -b, width)
 }
@@ -49,7 +49,7 @@ pub(crate) fn limb(point: DVec3, [from, to]: [DVec3; 2], [start, end]: [f64; 2])
     point.distance(from + share * along) - (start + share * (end - start))
 }
 
-/// Limbs in a row, joined by fillets; each joint is a center and a radius.
+/// Limbs joined end to end by fillets; each joint is a center and a radius.
 pub(crate) fn chain(point: DVec3, joints: &[(DVec3, f64)], width: f64) -> f64 {
     union_of(joints.windows(2).map(|pair| limb(point, [pair[0].0, pair[1].0], [pair[0].1, pair[1].1])), width)
 }
@@ -77,7 +77,7 @@ pub(crate) fn polygon(point: DVec2, corners: &[DVec2]) -> f64 {
     if inside { -nearest } else { nearest }
 }
 
-/// A flat shape given by its distance in the plane, made `half_height` thick to both sides of `height`, edges rounded.
+/// A flat shape given by its distance in the plane, extruded by `half_height` to both sides of `height`, edges rounded.
 pub(crate) fn extruded(flat: f64, height: f64, half_height: f64, rounding: f64) -> f64 {
     let beyond = DVec2::new(flat + rounding, height.abs() - half_height + rounding);
     beyond.max(DVec2::ZERO).length() + beyond.max_element().min(0.0) - rounding
@@ -93,7 +93,7 @@ pub(crate) fn frustum(point: DVec3, bottom: DVec2, top: DVec2, rounding: f64) ->
     polygon(DVec2::new(flat, point.z), &corners) - rounding
 }
 
-/// From zero at `from` to one at `to`, with no slope at either end.
+/// Rises smoothly from zero at `from` to one at `to`, with zero slope at both ends.
 pub(crate) fn smooth_step(from: f64, to: f64, value: f64) -> f64 {
     let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)

@@ -12,10 +12,10 @@ use rayon::prelude::*;
 
 use super::flips::Flips;
 
-/// Rounds of flipping and relaxing. Twice as many raise the smallest angles by less than a degree.
+/// Rounds of flipping and relaxing. Twice as many raise the smallest angle by less than a degree.
 const ROUNDS: usize = 40;
 
-/// Share of the way to its neighbors' mean that a vertex moves in a round. Above one half, thin parts begin to swing.
+/// Fraction of the distance to the mean of its neighbors that a vertex moves in a round. Above one half, thin parts oscillate.
 const RELAXATION: f64 = 0.5;
 
 /// Newton steps onto the surface after each round and at the end.
@@ -77,7 +77,7 @@ fn relax(mesh: &mut TriMesh, distance: &(dyn Fn(DVec3) -> f64 + Sync), cell: f64
     });
 }
 
-/// Newton steps along the gradient to where the distance is zero, none longer than a cell.
+/// Newton steps along the gradient to the zero of the distance, each at most one cell long.
 fn project(position: &mut DVec3, distance: &(dyn Fn(DVec3) -> f64 + Sync), cell: f64, steps: usize) {
     for _ in 0..steps {
         let slope = gradient(distance, *position, cell);
