@@ -81,7 +81,7 @@ def test_frozen_edges_and_kept_balls_are_not_refined(ball):
     assert edited(frozen=np.arange(len(ball.positions))) == 0
     assert edited(keep=[((0, 0, 1), 2.0)]) == 0
     session = isochore.Session(ball)
-    with pytest.raises(ValueError, match="2562 is none"):
+    with pytest.raises(ValueError, match="vertex 2562 is out of range"):
         session.freeze_edges([2562])
     with pytest.raises(ValueError, match="-1 is not a valid index"):
         session.freeze_edges([-1])
