@@ -25,12 +25,25 @@ use passes::{Locked, Passes, Unlocked};
 use refine::Criteria;
 use tessellation::Tessellation;
 
-/// How to deform.
+/// Options of [`deform`].
+///
+/// ```
+/// use isochore_field::{DeformOptions, RefineOptions};
+///
+/// // The flow alone: neither new triangles nor a volume correction.
+/// let bare = DeformOptions { refine: None, lock: false };
+/// // A tighter estimate of the facet error than the default.
+/// let fine = DeformOptions {
+///     refine: Some(RefineOptions { volume: 1e-5, ..RefineOptions::default() }),
+///     ..DeformOptions::default()
+/// };
+/// assert!(fine.lock && !bare.lock);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeformOptions {
-    /// When to split triangles; none to keep them as they are.
+    /// Criteria of refinement, or `None` to keep the triangles.
     pub refine: Option<RefineOptions>,
-    /// Whether the exact final correction gives back the volume at rest.
+    /// Whether a last small displacement restores the volume at rest exactly.
     pub lock: bool,
 }
 
@@ -47,23 +60,23 @@ pub struct Deformed {
     pub mesh: TriMesh,
     /// The same triangles at rest.
     pub rest: TriMesh,
-    /// The strokes, in time steps as fine as they had to be.
+    /// The strokes, with the time steps that were used.
     pub strokes: Vec<Stroke>,
-    /// What was done.
+    /// Measures of the result and of each pass.
     pub receipt: Receipt,
 }
 
-/// Why a deformation gave nothing.
+/// Errors of [`deform`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DeformError {
-    /// The monitor stopped it.
+    /// The monitor cancelled the deformation.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// The mesh has an index out of range or a coordinate that is not finite.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// A coordinate left the range of numbers.
-    #[error("vertex {vertex} is carried out of the range of numbers; coordinates or strokes are too large")]
+    /// A coordinate is beyond the range of `f64`.
+    #[error("vertex {vertex} is moved beyond the range of f64; coordinates or strokes are too large")]
     Overflow {
         /// Index of the vertex, inserted ones included.
         vertex: usize,
@@ -73,26 +86,51 @@ pub enum DeformError {
     Stamp {
         /// Index of the stroke, from 0.
         stroke: usize,
-        /// Why not.
+        /// Cause.
         source: PressError,
     },
-    /// The volume of the mesh as given is no number.
-    #[error("the volume is beyond the range of numbers; coordinates are too large")]
+    /// The volume of the input mesh is not finite.
+    #[error("the volume is beyond the range of f64; coordinates are too large")]
     VolumeOverflow,
 }
 
 /// Deforms `mesh` by the strokes, one after the other.
 ///
-/// Every vertex, inserted ones included, follows the flow from where it lies on the mesh as given, or on the mesh that a stamp
-/// left: what follows a stamp takes its flat triangles for the true surface. The flow keeps volumes up
-/// to the error of the time step (order four); flat triangles do up to the facet error, which refinement holds below
-/// [`RefineOptions::volume`] by an estimate; the lock gives back what is left. A volume is kept only where the mesh is closed,
-/// and self-intersections of the mesh as given stay.
+/// Each vertex follows the flow from its position on the input mesh. A vertex that refinement
+/// inserts starts from a point of an input triangle. After a stamp, the flow starts from the flat
+/// triangles that the stamp left.
+///
+/// The volume of a closed mesh changes by two errors. The error of the time step has order four.
+/// The facet error is that of flat triangles, and refinement keeps its estimate below
+/// [`RefineOptions::volume`]. The lock then corrects the remaining change. An open mesh has no
+/// volume to keep. Self-intersections of the input mesh remain.
 ///
 /// The result has the same bits for any number of threads.
 ///
+/// ```
+/// use std::sync::Arc;
+///
+/// use glam::DVec3;
+/// use isochore_field::{DeformOptions, Move, Pose, Profile, Stroke, Tool, deform};
+/// use isochore_mesh::{NoProgress, Sphere, primitives};
+///
+/// let tool = Tool::new(Arc::new(Sphere::new(0.3)?), 0.3, Profile::Quintic)?;
+/// let keys = vec![Pose::at(DVec3::Z * 1.6), Pose::at(DVec3::Z * 1.2)];
+/// let press = Stroke::Move(Move::new(Arc::new(tool), keys, 0.125)?);
+///
+/// let mesh = primitives::icosphere(1.0, 3);
+/// let deformed = deform(&mesh, &[press], &DeformOptions::default(), &NoProgress)?;
+/// let [before, after] = [deformed.receipt.volume_before, deformed.receipt.volume_after].map(Option::unwrap);
+/// assert!((after / before - 1.0).abs() < 1e-13);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
-/// [`DeformError`].
+/// - [`DeformError::Cancelled`] if `monitor` cancels.
+/// - [`DeformError::Mesh`] if an index is out of range or a coordinate is not finite.
+/// - [`DeformError::VolumeOverflow`] and [`DeformError::Overflow`] if coordinates are too large.
+/// - [`DeformError::Stamp`] if the mesh is open, or a stamp starts inside the surface or displaces
+///   more than the surface around it can take up.
 pub fn deform(
     mesh: &TriMesh,
     strokes: &[Stroke],
@@ -151,7 +189,7 @@ fn check_range(surface: &Tessellation) -> Result<(), DeformError> {
     }
 }
 
-/// The strokes that the base of the flow still has before it.
+/// The strokes that lead from the base of the surface to its image.
 fn since_last_stamp(strokes: &[Stroke]) -> &[Stroke] {
     let last = strokes.iter().rposition(|stroke| matches!(stroke, Stroke::Stamp(_)));
     &strokes[last.map_or(0, |last| last + 1)..]

@@ -1,27 +1,30 @@
-//! The exact balance of a volume: vertices move along given vectors, by the one factor that makes the volume what is wanted.
+//! The exact balance of a volume: vertices move along given directions, by one common factor.
 //!
-//! Moving every vertex by λ times its own vector makes the volume an exact cubic in λ, whose root is found by Newton's method.
+//! If each vertex moves by λ times its direction, the volume is a cubic polynomial in λ. Newton's
+//! method finds the root at which the volume has its target value.
 
 use glam::DVec3;
 use isochore_mesh::sum_terms;
 
-/// Newton's method ends when the volume is off by less than this share: a few roundings of its sum. Smaller never ends; larger
-/// leaves volume behind.
+/// Newton's method ends at this relative error of the volume: a few roundings of its sum. A larger
+/// value leaves an error of the volume; a smaller value is never reached.
 const RESIDUAL: f64 = 1e-15;
 
-/// Where rounding keeps Newton's method from [`RESIDUAL`], a root this good will do. Larger lets vertices be moved towards no
-/// root at all; smaller refuses what rounding allows.
+/// Relative error that is accepted if rounding keeps Newton's method from [`RESIDUAL`]. A larger value
+/// accepts a point that is not a root; a smaller value rejects roots because of rounding.
 const ACCEPTED_RESIDUAL: f64 = 1e-13;
 
-/// Newton's method on a cubic that is nearly linear doubles its digits each time: five to reach f64's, the rest for safety.
+/// Most iterations. On a nearly linear cubic each iteration doubles the correct digits, so five reach
+/// the precision of `f64`; the rest are for safety.
 const MAX_ITERATIONS: usize = 60;
 
-/// The coefficient of λ may be this small against the volume before dividing by it makes the shift explode. Larger gives up
-/// where the lock is still harmless.
+/// Smallest coefficient of λ relative to the volume. A larger value gives up on harmless shifts; a
+/// smaller value divides by noise and lets the shift explode.
 const LEAST_SLOPE: f64 = 1e-9;
 
-/// Moves `positions` along `directions` by the common factor that makes the volume inside `triangles` equal to `volume`, and
-/// returns the factor. None, and nothing moved, when the directions have no hold on the volume, so that no root brings it back.
+/// Moves `positions` along `directions` by the common factor that makes the volume inside `triangles`
+/// equal to `volume`, and returns the factor. Returns `None` and leaves `positions` unchanged if the
+/// directions cannot bring the volume to its target.
 pub(crate) fn balance(
     positions: &mut [DVec3],
     directions: &[DVec3],
@@ -31,8 +34,8 @@ pub(crate) fn balance(
     solve(positions, directions, triangles, mean, volume, volume.abs())
 }
 
-/// The same for a part of a closed surface, at whose boundary the directions are zero: the volume inside the whole grows by `gain`.
-/// `size` is that volume.
+/// Like [`balance`] for a part of a closed surface: the volume inside the whole grows by `gain`. The
+/// directions are zero at the boundary of the part, and `size` is the volume of the whole.
 pub(crate) fn balance_part(
     positions: &mut [DVec3],
     directions: &[DVec3],
@@ -40,7 +43,7 @@ pub(crate) fn balance_part(
     gain: f64,
     size: f64,
 ) -> Option<f64> {
-    // Cones to any one point differ by as much as the whole does.
+    // With the boundary fixed, the volume of the cones from any center changes as the whole does.
     let center = mean(positions);
     let [volume, ..] = volume_cubic(positions, directions, triangles, center);
     solve(positions, directions, triangles, |_| center, volume + gain, size)
@@ -50,7 +53,7 @@ fn mean(positions: &[DVec3]) -> DVec3 {
     positions.iter().sum::<DVec3>() / positions.len() as f64
 }
 
-/// Makes the volume between the triangles and a center equal to `volume`, up to a share of `size`.
+/// Makes the volume between the triangles and a center equal to `volume`, up to a fraction of `size`.
 fn solve(
     positions: &mut [DVec3],
     directions: &[DVec3],
@@ -60,18 +63,18 @@ fn solve(
     size: f64,
 ) -> Option<f64> {
     let mut total = 0.0;
-    // The second pass takes back what rounding the moved coordinates has changed.
+    // The second pass corrects the rounding of the moved coordinates.
     let before = positions.to_vec();
     for _ in 0..2 {
         let [c0, c1, c2, c3] = volume_cubic(positions, directions, triangles, center(positions));
-        let has_hold = c1.abs() > LEAST_SLOPE * size;
-        let Some(lambda) = has_hold.then(|| root(c0 - volume, c1, c2, c3, size)).flatten() else {
+        let is_effective = c1.abs() > LEAST_SLOPE * size;
+        let Some(lambda) = is_effective.then(|| root(c0 - volume, c1, c2, c3, size)).flatten() else {
             positions.copy_from_slice(&before);
             return None;
         };
         total += lambda;
         for index in 0..positions.len() {
-            // Adding zero would turn a coordinate of −0 into +0.
+            // Skipped because adding zero would turn a coordinate of −0 into +0.
             if directions[index] != DVec3::ZERO {
                 positions[index] = before[index] + total * directions[index];
             }
@@ -98,8 +101,8 @@ fn volume_cubic(positions: &[DVec3], directions: &[DVec3], triangles: &[[u32; 3]
     })
 }
 
-/// The root of c0 + c1 λ + c2 λ² + c3 λ³ that Newton's method reaches from zero, to a residual that is a share of `size`; none
-/// where it reaches none.
+/// The root of c0 + c1 λ + c2 λ² + c3 λ³ that Newton's method reaches from zero, to a residual that is
+/// a fraction of `size`. `None` if it does not converge.
 fn root(c0: f64, c1: f64, c2: f64, c3: f64, size: f64) -> Option<f64> {
     let residual = |lambda: f64| c0 + lambda * (c1 + lambda * (c2 + lambda * c3));
     let mut lambda = 0.0;
@@ -117,14 +120,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_root_is_found() {
+    fn finds_a_root() {
         let (c0, c1, c2, c3) = (0.02, 1.0, 0.3, 0.1);
         let lambda = root(c0, c1, c2, c3, 1.0).unwrap();
         assert!((c0 + lambda * (c1 + lambda * (c2 + lambda * c3))).abs() <= RESIDUAL);
     }
 
     #[test]
-    fn what_has_no_root_moves_nothing() {
+    fn reports_a_cubic_without_a_root() {
         assert_eq!(root(1.0, 0.1, 1.0, 0.0, 1.0), None);
         assert_eq!(root(1.0, 0.0, 0.0, 0.0, 1.0), None);
     }

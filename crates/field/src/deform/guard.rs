@@ -1,8 +1,9 @@
-//! The guard: what is done where a run would not keep what it set out to keep.
+//! The guard: remedies for a deformation that would miss its tolerances.
 //!
-//! It works on measures of its own and never looks at promises: the Jacobian of a stroke's flow map decides the time step, the
-//! measured volume decides whether refinement goes on, and crossings that the lock would add decide whether it is given less to
-//! do. Each cure has a bounded number of rounds; what is left is told in the receipt.
+//! Each remedy starts from a measurement, not from an a priori bound. The Jacobian of the flow map
+//! of a stroke sets its time step. The measured volume decides whether refinement continues.
+//! Crossings that the lock would add cause more refinement, which leaves the lock less to correct.
+//! Each remedy has a bounded number of rounds; the receipt reports the remaining defect.
 
 use glam::DVec3;
 use isochore_mesh::{Cancelled, Monitor};
@@ -16,24 +17,26 @@ use super::{
 };
 use crate::flow::{JacobianRange, Stroke};
 
-/// Farthest from one that the Jacobian of a flow map may be before the time step is halved. Larger lets coarse steps squeeze
-/// and swell material that the flow would not; smaller takes finer steps where the volume is dominated by facets anyway.
+/// Deviation of the Jacobian from one at which the time step is halved. A larger value lets coarse
+/// steps compress and expand material; a smaller value takes finer steps although the facet error
+/// dominates the volume.
 const JACOBIAN_TOLERANCE: f64 = 0.1;
 
-/// A step is halved this often at most: from the largest allowed to below the default.
+/// Most halvings of a step: enough to get from the largest allowed step to less than the default.
 const MAX_HALVINGS: u32 = 4;
 
-/// Half the step must leave this share of the deviation at most, or it is not the step that is at fault. Order four leaves a
-/// sixteenth; jumps of the velocity leave all.
+/// Half the step must reduce the deviation to this fraction, or the step is not the cause. Order
+/// four leaves a sixteenth of the deviation; a discontinuous velocity leaves all of it. A larger
+/// value halves in vain; a smaller value gives up on steps that are merely coarse.
 const WORTHWHILE: f64 = 0.7;
 
-/// Rounds of finer refinement at most, for the volume and for the lock.
+/// Most rounds of finer refinement, for the volume and for the lock.
 const MAX_ROUNDS: usize = 3;
 
-/// Share of the facet error allowed so far that the next round allows where the volume was missed.
+/// Each round for the volume allows this fraction of the facet error of the round before.
 const FINER: f64 = 0.25;
 
-/// The same where the lock made sheets cross: its shift goes with the facet error.
+/// Each round for the lock allows this fraction: the shift of the lock is proportional to the facet error.
 const FINER_FOR_LOCK: f64 = 0.1;
 
 /// The time step of a stroke after [`choose_step`].
@@ -73,8 +76,8 @@ pub(crate) fn choose_step(
     Ok(StepChoice { halvings, jacobian: Some(range) })
 }
 
-/// Refines on where the measured change since the base, whose volume is `volume`, is beyond what was asked for and facets
-/// account for it. Returns the facet error in the end.
+/// Refines further if the volume has changed by more than the criteria allow and the facet error
+/// explains the change. `volume` is that of the base. Returns the final facet error.
 pub(crate) fn refine_to_volume(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
@@ -86,7 +89,8 @@ pub(crate) fn refine_to_volume(
     let mut finer = *criteria;
     for _ in 0..MAX_ROUNDS {
         let gained = mesh.image_volume() - volume;
-        // What the flat triangles lack must be what is missing, or the time step is at fault, which refinement does not mend.
+        // If the estimated facet error does not explain the change, the time step does, which
+        // refinement cannot correct.
         let is_facets = (gained + facet_error).abs() < facet_error.abs();
         if !(gained.abs() > criteria.volume() && is_facets) {
             break;
@@ -101,21 +105,22 @@ pub(crate) fn refine_to_volume(
     Ok(facet_error)
 }
 
-/// The lock, and what had to be done so that it does no harm.
+/// The lock, computed and not yet applied, and the refinement before it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LockPreparation {
     /// The facet error after refinement, if any was needed.
     pub(crate) facet_error: Option<f64>,
-    /// Triangles that the lock makes cross all the same.
+    /// Number of triangles that the lock still makes cross.
     pub(crate) crossing: usize,
-    /// Where the vertices go; none where the volume cannot be given back.
+    /// Locked positions of the vertices, or `None` if no displacement restores the volume.
     pub(crate) locked: Option<(Vec<DVec3>, Lock)>,
     /// Wall time, seconds.
     pub(crate) seconds: f64,
 }
 
-/// Refines until giving back `volume` makes nothing cross that did not: the shift of the lock can be more than the thickness of
-/// a thin sheet, and is the smaller the less volume the facets have lost.
+/// Refines until the lock to `volume` adds no crossings. The shift of the lock can exceed the
+/// thickness of a thin sheet. It is proportional to the volume that the facets have lost, so
+/// refinement reduces it.
 pub(crate) fn prepare_lock(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
@@ -145,7 +150,7 @@ pub(crate) fn prepare_lock(
     Ok(preparation)
 }
 
-/// The number of triangles that cross where the `locked` vertices are, and do not before.
+/// The number of triangles that cross at the `locked` positions and not at the current ones.
 fn crossings_by_lock(mesh: &Tessellation, locked: &[DVec3], monitor: &dyn Monitor) -> Result<usize, Cancelled> {
     let locked = mesh.new_crossings(locked, monitor)?;
     if locked.is_empty() {

@@ -1,13 +1,13 @@
-//! The volume lock: a last small displacement that gives back exactly the volume at rest.
+//! The volume lock: a last small displacement that restores the volume at rest exactly.
 //!
-//! Vertices move along the gradient of the volume weighted by how far each has come, so that what did not move is not moved and
-//! small triangles are moved least.
+//! Each vertex moves along the gradient of the volume, scaled by the displacement of the vertex from
+//! rest. Vertices at rest stay, and vertices of small triangles move least.
 
 use glam::DVec3;
 
 use super::balance::{balance, balance_part};
 
-/// What the lock did.
+/// Size of a lock's displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lock {
     /// Longest displacement of a vertex, model units.
@@ -16,10 +16,24 @@ pub struct Lock {
     pub max_shift_per_edge: f64,
 }
 
-/// Moves `image` so that its volume is `volume`. None, and nothing moved, when nothing had moved or the displacement has no
-/// hold on the volume, so that no root brings it back.
+/// Moves `image` so that its volume is `volume`. Returns `None` and leaves `image` unchanged if no
+/// vertex has moved from `rest` or the displacement cannot change the volume.
 ///
-/// `rest` is where the vertices set out; those that have not moved from there stay.
+/// `rest` holds the positions of the same vertices at rest. A vertex that has not moved stays.
+///
+/// ```
+/// use isochore_field::lock_volume;
+/// use isochore_mesh::{primitives, signed_volume};
+///
+/// let sphere = primitives::icosphere(1.0, 3);
+/// let volume = signed_volume(&sphere.positions, &sphere.triangles);
+/// // A stretch of the upper half, which changes the volume.
+/// let mut image = sphere.positions.clone();
+/// image.iter_mut().filter(|point| point.z > 0.0).for_each(|point| point.z *= 1.1);
+/// let lock = lock_volume(&sphere.positions, &mut image, &sphere.triangles, volume).unwrap();
+/// assert!((signed_volume(&image, &sphere.triangles) / volume - 1.0).abs() < 1e-13);
+/// assert!(lock.max_shift < 0.15);
+/// ```
 ///
 /// # Panics
 /// If an index is out of range, or `rest` is not as long as `image`.
@@ -30,8 +44,9 @@ pub fn lock_volume(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], 
     Some(Lock::between(&unlocked, image, triangles))
 }
 
-/// The same for a part of a closed surface, with all triangles at what has moved: moves `image` so that the volume inside the whole
-/// grows by `gain`. `size` is the volume of the whole. Takes time in proportion to the part.
+/// Moves `image`, a part of a closed surface, so that the volume inside the whole surface grows by
+/// `gain`. `triangles` must include all triangles at the moved vertices, and `size` is the volume of
+/// the whole. Time is proportional to the part. Returns `None` as [`lock_volume`] does.
 ///
 /// # Panics
 /// If an index is out of range, or `rest` is not as long as `image`.
@@ -43,7 +58,7 @@ pub fn lock_part(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], ga
 }
 
 impl Lock {
-    /// What takes `unlocked` positions to `locked` ones.
+    /// The size of the displacement from `unlocked` to `locked` positions.
     pub fn between(unlocked: &[DVec3], locked: &[DVec3], triangles: &[[u32; 3]]) -> Self {
         let shift = |vertex: u32| locked[vertex as usize].distance(unlocked[vertex as usize]);
         let max_shift = (0..locked.len() as u32).map(shift).fold(0.0, f64::max);
@@ -61,7 +76,8 @@ impl Lock {
     }
 }
 
-/// For each vertex its area normal, scaled by its share of the largest displacement.
+/// The area normal of each vertex, scaled by its displacement relative to the largest. `None` if no
+/// vertex has moved or the surface has no area.
 fn directions(rest: &[DVec3], image: &[DVec3], triangles: &[[u32; 3]]) -> Option<Vec<DVec3>> {
     let displacements: Vec<f64> = rest.iter().zip(image).map(|(rest, image)| rest.distance(*image)).collect();
     let largest = displacements.iter().copied().fold(0.0, f64::max);
@@ -71,13 +87,14 @@ fn directions(rest: &[DVec3], image: &[DVec3], triangles: &[[u32; 3]]) -> Option
     let mut directions = vec![DVec3::ZERO; image.len()];
     for triangle in triangles {
         let [a, b, c] = triangle.map(|vertex| image[vertex as usize]);
-        // A sixth of the cross product is a third of the area, along the normal: the gradient of the volume at each corner.
+        // The gradient of the volume at each corner is a third of the area along the normal, which is a
+        // sixth of the cross product.
         let gradient = (b - a).cross(c - a) / 6.0;
         for vertex in triangle {
             directions[*vertex as usize] += gradient;
         }
     }
-    // Of the size of the mean area normal, so that λ is a length times a number near one.
+    // Normalized by the largest area normal, so that λ is about the length of the largest shift.
     let scale = directions.iter().map(|direction| direction.length()).fold(0.0, f64::max);
     if scale == 0.0 {
         return None;

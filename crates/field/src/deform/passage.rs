@@ -55,8 +55,8 @@ pub(super) enum Action {
 impl Passage {
     /// Takes the surface through the strokes, and refines their time steps.
     ///
-    /// A stamp is not a flow: it acts on the surface that the strokes before it leave, and the strokes after it start from the
-    /// surface that it leaves.
+    /// A stamp is not a flow. It acts on the surface that the strokes before it leave, and the strokes
+    /// after it start from the surface that it leaves.
     pub(super) fn through(
         surface: &mut Tessellation,
         strokes: &mut [Stroke],
@@ -84,7 +84,7 @@ impl Passage {
     }
 }
 
-/// Advects the surface through all `strokes`, none of which is a stamp.
+/// Advects the surface through `strokes`, which must not include a stamp.
 fn flow(surface: &mut Tessellation, strokes: &mut [Stroke], context: &Context<'_>) -> Result<Passage, Cancelled> {
     let Context { criteria, monitor, .. } = *context;
     let mut passage = Passage::default();
@@ -106,7 +106,8 @@ fn flow(surface: &mut Tessellation, strokes: &mut [Stroke], context: &Context<'_
     Ok(passage)
 }
 
-/// Advects the surface through the last of `strokes` and refines it before and after. Returns the result and the facet error.
+/// Advects the surface through the last of `strokes`, with refinement before and after. Returns the
+/// result and the facet error.
 fn advect_last(
     surface: &mut Tessellation,
     strokes: &[Stroke],

@@ -9,12 +9,14 @@ use super::{
     passage::{Action, Context, Passage, StrokePass},
     tessellation::{Tessellation, count_different},
 };
+use crate::flow::JacobianRange;
 
-/// A lock that moves a vertex by more than this share of the shortest edge at it may fold triangles. Larger stays silent when
-/// that happens; smaller cries over nothing.
+/// A lock that moves a vertex by more than this fraction of its shortest edge may fold triangles.
+/// A larger value misses folds; a smaller value warns about harmless shifts.
 const NOTABLE_LOCK_SHIFT: f64 = 0.1;
 
-/// A facet error, estimated or measured, beyond this share of the volume is worth a note.
+/// A facet error, estimated or measured, beyond this fraction of the volume causes a note. A larger
+/// value hides visible errors; a smaller value warns about errors that the lock corrects unseen.
 const NOTABLE_FACET_ERROR: f64 = 5e-3;
 
 /// The results of all passes, in order.
@@ -131,8 +133,8 @@ impl Passes<'_> {
     fn facet_note(&self, facet_error: f64) -> Option<Note> {
         let volume = self.context.volume?;
         let change = relative_change(volume, self.unlocked.volume?)?;
-        let share = change.abs().max((facet_error / volume).abs());
-        (share > NOTABLE_FACET_ERROR).then_some(Note::FacetError { share })
+        let fraction = change.abs().max((facet_error / volume).abs());
+        (fraction > NOTABLE_FACET_ERROR).then_some(Note::FacetError { fraction })
     }
 
     fn lock_note(&self) -> Option<Note> {
@@ -147,7 +149,7 @@ impl Passes<'_> {
 }
 
 impl StrokePass {
-    fn jacobian(&self) -> Option<crate::flow::JacobianRange> {
+    fn jacobian(&self) -> Option<JacobianRange> {
         match self.action {
             Action::Flow(step) => step.jacobian,
             Action::Stamp { .. } => None,

@@ -1,11 +1,12 @@
-//! The press: acts a stamp on a surface, step by step.
+//! The press: presses a stamp into a surface, step by step.
 //!
-//! Each step dents and raises. Vertices that the tool runs over go with it until they lie on its surface, so that it neither
-//! cuts into them nor leaves a gap; the volume so displaced is raised around the contact by the exact balance. Where a step
-//! would fold triangles it is halved.
+//! Each step dents the surface and raises a rim. A vertex inside the tool moves with the tool until it
+//! is on its surface, so the tool neither cuts into the vertices nor leaves a gap. The exact balance
+//! raises the displaced volume around the contact. A step that would fold triangles is halved.
 //!
-//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, section 11.2.6. There the volumes are products of
-//! speeds; here they are those of the meshes, so that nothing is lost at any length of step.
+//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, section 11.2.6. The source
+//! balances products of speeds; this press balances volumes of meshes, which is exact for any length
+//! of step.
 
 mod contact;
 mod footprint;
@@ -25,29 +26,28 @@ use crate::{
     flow::Stamp,
 };
 
-/// Why a stamp cannot be pressed.
+/// Errors when pressing a [`Stamp`] into a surface.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PressError {
-    /// The surface encloses no volume that could be kept.
-    #[error(
-        "a stamp raises what it displaces, and an open mesh, or one without volume, has nothing to balance; close it"
-    )]
+    /// The surface is open or encloses no volume.
+    #[error("a stamp needs a closed mesh with a volume, to raise the volume that it displaces; close the mesh")]
     NoVolume,
-    /// The tool is in the surface before it has moved.
+    /// The tool is inside the surface at its first key.
     #[error("the stamp starts {depth} deep in the surface, at vertex {vertex}; start it outside")]
     StartsInside {
-        /// Index of the vertex that lies deepest, inserted ones included.
+        /// Index of the deepest vertex, inserted ones included.
         vertex: usize,
-        /// How deep, model units.
+        /// Its depth in the tool, model units.
         depth: f64,
     },
-    /// What the tool displaces cannot be raised around it.
+    /// The surface around the tool cannot take up the displaced volume.
     #[error(
-        "the surface around the contact cannot take up what the stamp displaces on {percent:.0} % of its way; \
-         widen the tool's support or press less deep"
+        "the surface around the contact cannot take up the volume that the stamp displaces \
+         at {percent:.0} % of its path; \
+         widen the tool's support or press less deeply"
     )]
     NoRoom {
-        /// Share of the way at which it stopped.
+        /// Percentage of the path at which the press stopped.
         percent: f64,
     },
 }
@@ -61,30 +61,33 @@ pub(crate) enum PressStop {
     Stamp(#[from] PressError),
 }
 
-/// What a stamp did.
+/// Result of pressing a stamp.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Pressed {
-    /// What was split, and all evaluations of the distance.
+    /// Refinement, with all evaluations of the distance.
     pub(crate) refinement: Refinement,
-    /// Whether it touched anything.
+    /// Whether the tool touched the surface.
     pub(crate) has_touched: bool,
-    /// Whether it touched the surface from both sides, as when it goes through a sheet.
+    /// Whether the tool touched the surface from both sides, as it does when it goes through a sheet.
     pub(crate) is_through: bool,
 }
 
-/// A step is halved this often before it is given up. Larger spends long on what will never fit; smaller gives up on relief
-/// that is finer than the steps.
+/// Most halvings of a step. A larger value spends long on a stamp that cannot be pressed; a smaller value
+/// gives up on relief that is finer than the steps.
 const MAX_HALVINGS: i32 = 8;
 
-/// Raised vertices may meet the tool, and what they then give way is raised elsewhere: less each time, so that a few rounds
-/// do. It only ends what a defect would keep going.
+/// Most rounds of a step. Raised vertices may enter the tool; the volume that they lose on leaving it is
+/// raised elsewhere. It shrinks from round to round, so a few suffice. The limit only ends a loop that
+/// a defect would keep alive.
 const MAX_ROUNDS: usize = 24;
 
-/// No edge may change by more than this share of its length by raising its ends in one step: below one, nothing folds. Larger
-/// lets the height of the rim depend on the number of steps; smaller takes more steps.
+/// Largest change of an edge, relative to its length, when one step raises its ends. Below one, nothing
+/// folds. A larger value makes the height of the rim depend on the number of steps; a smaller value
+/// takes more steps.
 const MOST_STRETCH: f64 = 0.125;
 
-/// Presses `stamp` into the image, which is frozen before and after. `criteria` allow splitting.
+/// Presses `stamp` into the image. The image is frozen before and after each step. Without `criteria`,
+/// no triangle is split.
 pub(crate) fn press(
     mesh: &mut Tessellation,
     stamp: &Stamp,
@@ -93,23 +96,23 @@ pub(crate) fn press(
 ) -> Result<Pressed, PressStop> {
     let volume = signed_volume(&mesh.image, &mesh.triangles);
     let mut pressed = Pressed::default();
-    let mut ends = stamp.way().step_ends();
+    let mut ends = stamp.path().step_ends();
     let (duration, steps) = (ends[ends.len() - 1], ends.len());
     let shortest = duration / steps as f64 * f64::powi(0.5, MAX_HALVINGS);
     ends.reverse();
     let mut time = 0.0;
     while let Some(&end) = ends.last() {
         monitor.check("stamp", time / duration)?;
-        let leg = Leg::new(stamp, time, end);
+        let motion = StepMotion::new(stamp, time, end);
         mesh.freeze();
         if let Some(criteria) = criteria {
-            let rim_edge = if pressed.has_touched { leg.rim_edge() } else { f64::INFINITY };
-            pressed.refinement.add(&footprint::resolve(mesh, &leg, rim_edge, criteria, monitor)?);
+            let rim_edge = if pressed.has_touched { motion.rim_edge() } else { f64::INFINITY };
+            pressed.refinement.add(&footprint::resolve(mesh, &motion, rim_edge, criteria, monitor)?);
         }
         if time == 0.0 {
-            leg.check_start(&mesh.image)?;
+            motion.check_start(&mesh.image)?;
         }
-        let step = step(mesh, &leg, volume);
+        let step = step(mesh, &motion, volume);
         pressed.add(&step);
         if step.is_complete {
             time = end;
@@ -129,7 +132,7 @@ pub(crate) fn press(
 /// Result of one step of a stamp.
 #[derive(Debug, Clone, Copy, Default)]
 struct Step {
-    /// Whether the step was done. If not, the image is of no use and the step must be shorter.
+    /// Whether the step succeeded. If not, the image is invalid and the step must be halved.
     is_complete: bool,
     has_touched: bool,
     is_through: bool,
@@ -146,16 +149,16 @@ impl Pressed {
 }
 
 /// Dents and raises the image once.
-fn step(mesh: &mut Tessellation, leg: &Leg<'_>, volume: f64) -> Step {
+fn step(mesh: &mut Tessellation, motion: &StepMotion<'_>, volume: f64) -> Step {
     let mut step = Step::default();
     for round in 0..MAX_ROUNDS {
         let cause = if round == 0 { Cause::Motion } else { Cause::Raising };
-        let near = contact::dent(&mut mesh.image, leg, cause);
+        let near = contact::dent(&mut mesh.image, motion, cause);
         step.evaluations += near.evaluations;
         if near.dented.is_empty() {
             return Step { is_complete: true, ..step };
         }
-        let rim = rim::Rim::new(&mesh.image, &mesh.triangles, &near, leg);
+        let rim = rim::Rim::new(&mesh.image, &mesh.triangles, &near, motion);
         if round == 0 {
             step.has_touched = true;
             step.is_through = rim.is_through;
@@ -170,7 +173,7 @@ fn step(mesh: &mut Tessellation, leg: &Leg<'_>, volume: f64) -> Step {
     step
 }
 
-/// Whether an edge has changed by too much of its length.
+/// Whether an edge has changed by more than [`MOST_STRETCH`].
 fn is_overstretched(before: &[DVec3], after: &[DVec3], triangles: &[[u32; 3]]) -> bool {
     triangles.iter().any(|triangle| {
         let [a, b, c] = triangle.map(|vertex| after[vertex as usize] - before[vertex as usize]);
@@ -184,39 +187,41 @@ fn is_overstretched(before: &[DVec3], after: &[DVec3], triangles: &[[u32; 3]]) -
     })
 }
 
-/// A part of a stamp's way.
+/// One step of a stamp's path.
 #[derive(Debug)]
-struct Leg<'a> {
+struct StepMotion<'a> {
     tool: &'a Tool,
     start: Placement,
     end: Placement,
-    /// Longest edge wanted where the tool touches.
+    /// Longest edge at the contact, model units.
     relief: f64,
-    /// Distances that rounding cannot tell from zero, model units.
+    /// Distances up to this one are zero up to rounding, model units.
     rounding: f64,
 }
 
-/// Roundings of the coordinates at hand that a distance takes up. Larger lets the tool stand in the surface; smaller sees
-/// contact come and go by rounding alone.
+/// Rounding error of a distance, in units of the rounding of the coordinates. A larger value leaves the
+/// tool inside the surface; a smaller value sees contacts that are rounding alone.
 const ROUNDINGS: f64 = 64.0;
 
-/// Share of the [relief](Stamp::relief) that the tool may stand in the surface where it starts: about as far as flat triangles
-/// between vertices that touch it cut into it, left by a stamp before. Larger takes a tool that starts inside for one that
-/// touches; smaller refuses to go on from a stamp.
+/// Depth to which the tool may start inside the surface, as a fraction of the
+/// [relief](Stamp::relief). After an earlier stamp, flat triangles between vertices on the tool cut
+/// about as deep into it. A larger value accepts a tool that starts inside; a smaller value refuses to
+/// continue from an earlier stamp.
 const START_DEPTH: f64 = 0.5;
 
-/// Edges across the support, at least, where something is raised. Fewer make an angular rim; more cost triangles.
+/// Fewest edges across the support at the rim. A larger value costs triangles; a smaller value makes an
+/// angular rim.
 const EDGES_ACROSS_RIM: f64 = 8.0;
 
-impl<'a> Leg<'a> {
+impl<'a> StepMotion<'a> {
     fn new(stamp: &'a Stamp, from: f64, to: f64) -> Self {
-        let way = stamp.way();
-        let [start, end] = [from, to].map(|time| way.pose_at(time));
-        let bounds = way.tool().support_bounds();
+        let path = stamp.path();
+        let [start, end] = [from, to].map(|time| path.pose_at(time));
+        let bounds = path.tool().support_bounds();
         let extent = bounds.min.abs().max(bounds.max.abs()).max_element()
             + start.translation.abs().max(end.translation.abs()).max_element();
         Self {
-            tool: way.tool(),
+            tool: path.tool(),
             start: Placement::from(&start),
             end: Placement::from(&end),
             relief: stamp.relief(),
@@ -224,12 +229,12 @@ impl<'a> Leg<'a> {
         }
     }
 
-    /// Longest edge where the support reaches around a contact, model units.
+    /// Longest edge at the rim, model units.
     fn rim_edge(&self) -> f64 {
         self.tool.support() / EDGES_ACROSS_RIM
     }
 
-    /// Whether the tool is outside where it starts.
+    /// Checks that the tool starts outside the surface.
     fn check_start(&self, positions: &[DVec3]) -> Result<(), PressError> {
         let near = contact::Near::of(positions, self.tool, &self.start);
         let depth = |index: usize| -near.distances[index];

@@ -1,23 +1,40 @@
-//! The receipt: what a deformation did, and what it could not do.
+//! The receipt of a deformation: measures and notes.
 
 use std::fmt;
 
 use crate::flow::JacobianRange;
 
-/// What a deformation did. Volumes are in cubic model units and stand only where the mesh is closed.
+/// Measures of a deformation. Volumes are in cubic model units, and `None` if the mesh is open.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_field::{DeformOptions, Note, Stroke, Twist, deform};
+/// use isochore_mesh::{NoProgress, primitives};
+///
+/// let twist = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Z, 1.0)?);
+/// let options = DeformOptions { refine: None, lock: true };
+/// let cube = primitives::box_mesh(DVec3::ONE, [4, 4, 4]);
+/// let receipt = deform(&cube, &[twist], &options, &NoProgress)?.receipt;
+/// assert_eq!(receipt.inserted_vertices, 0);
+/// assert_eq!(receipt.strokes[0].moved, receipt.moved_vertices);
+/// for note in &receipt.notes {
+///     println!("{note}");
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Receipt {
     /// Volume at rest.
     pub volume_before: Option<f64>,
-    /// Volume of the flat triangles after all strokes, before the lock: what the bare method gives.
+    /// Volume of the flat triangles after all strokes, before the lock.
     pub volume_before_lock: Option<f64>,
-    /// Volume in the end.
+    /// Volume of the result.
     pub volume_after: Option<f64>,
     /// Estimated signed volume that the flat triangles lack before the lock.
     pub facet_error: Option<f64>,
-    /// Longest displacement by the lock, model units; none where there was no lock.
+    /// Longest displacement by the lock, model units, or `None` without a lock.
     pub lock_max_shift: Option<f64>,
-    /// Longest displacement from rest to the end, model units.
+    /// Longest displacement from rest to the result, model units.
     pub max_displacement: f64,
     /// Vertices, inserted ones included, whose coordinates differ in any bit from rest, before the lock.
     pub moved_vertices: usize,
@@ -27,39 +44,42 @@ pub struct Receipt {
     pub strokes: Vec<StrokeReceipt>,
     /// Wall time of the stages.
     pub seconds: StageSeconds,
-    /// What the user should know beside the figures.
+    /// Conditions that the user should know, in the order of the passes.
     pub notes: Vec<Note>,
 }
 
-/// What one stroke did.
+/// Measures of one stroke.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StrokeReceipt {
     /// Wall time, refinement included.
     pub seconds: f64,
-    /// Evaluations of the fields, those for refinement included.
+    /// Evaluations of the fields, including those for refinement.
     pub evaluations: u64,
-    /// Vertices that this stroke moved; of those inserted after it, the ones that any stroke so far moved.
+    /// Vertices that this stroke moved. A vertex inserted after the stroke counts if it differs from
+    /// its rest position.
     pub moved: usize,
     /// Vertices that refinement inserted for this stroke.
     pub inserted: usize,
-    /// Jacobian determinants of its flow map at some of the vertices that it moved; none where it moved none, or is no flow.
+    /// Jacobian determinants of the flow map at some of the moved vertices, or `None` if the stroke
+    /// moved none or is a stamp.
     pub jacobian: Option<JacobianRange>,
-    /// Signed change of the volume by this stroke, as a share of the volume at rest; none where that is zero.
+    /// Signed change of the volume by this stroke, relative to the volume at rest. `None` if that is
+    /// zero or the mesh is open.
     pub volume_change: Option<f64>,
 }
 
 /// Wall time of the stages of a deformation, in seconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StageSeconds {
-    /// Carrying the vertices.
+    /// Advection of the vertices, and stamps.
     pub advect: f64,
-    /// Refinement, its own carrying of points included.
+    /// Refinement, including the advection of new points.
     pub refine: f64,
-    /// The volume lock, the search for what it makes cross included, and refinement for that.
+    /// The volume lock, including the search for crossings and the refinement they call for.
     pub lock: f64,
 }
 
-/// Something the user should know.
+/// A condition that the user should know.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Note {
     /// Refinement stopped at the limit on triangles.
@@ -69,48 +89,48 @@ pub enum Note {
         /// The limit.
         max_triangles: usize,
     },
-    /// The time step was halved because the flow map would not have kept volumes.
+    /// The time step was halved because the flow map did not preserve volume.
     StepHalved {
         /// Index of the stroke, from 0.
         stroke: usize,
-        /// How often.
+        /// Number of halvings.
         times: u32,
     },
-    /// The flow map of a stroke does not keep volumes at some vertices, and finer steps did not mend it.
+    /// The flow map of a stroke does not preserve volume at some vertices, even with finer steps.
     Jacobian {
         /// Index of the stroke, from 0.
         stroke: usize,
-        /// Its determinants.
+        /// Jacobian determinants.
         range: JacobianRange,
     },
-    /// The lock made triangles cross, and more refinement did not mend it.
+    /// The lock made triangles cross, even after more refinement.
     LockCrossings {
-        /// How many.
+        /// Number of triangles.
         triangles: usize,
     },
-    /// The flat triangles alone are off by a noticeable share of the volume.
+    /// The facet error is a noticeable fraction of the volume.
     FacetError {
-        /// Share of the volume, the larger of estimate and measure.
-        share: f64,
+        /// Fraction of the volume: the larger of the estimated and the measured error.
+        fraction: f64,
     },
-    /// The lock had to move vertices by a noticeable part of the edges at them.
+    /// The lock moved vertices by a noticeable fraction of their edges.
     LockShift {
         /// Largest ratio of a vertex' displacement to the shortest edge at it.
         ratio: f64,
     },
-    /// A stamp went its way and met nothing.
+    /// A stamp touched nothing on its path.
     StampMissed {
         /// Index of the stroke, from 0.
         stroke: usize,
     },
-    /// A stamp touched the surface from both sides: it went through a sheet, which then lies on itself.
+    /// A stamp went through a thin sheet, which is now folded onto itself.
     StampThrough {
         /// Index of the stroke, from 0.
         stroke: usize,
     },
-    /// The lock was asked for and found nothing to hold: nothing had moved, or the displacement does not change the volume.
+    /// The lock was skipped: no vertex had moved, or the displacement cannot change the volume.
     LockSkipped,
-    /// The lock was asked for, and the mesh is open.
+    /// The lock was skipped: the mesh is open.
     LockNeedsClosed,
 }
 
@@ -121,20 +141,20 @@ impl fmt::Display for Note {
                 write!(f, "refinement of stroke {stroke} stopped at the limit of {max_triangles} triangles")
             }
             Self::StepHalved { stroke, times } => {
-                write!(f, "the time step of stroke {stroke} was halved {times} times to keep volumes")
+                write!(f, "the time step of stroke {stroke} was halved {times} times to preserve volume")
             }
             Self::Jacobian { stroke, range: JacobianRange { min, max } } => {
                 write!(
                     f,
-                    "stroke {stroke} scales volumes by {min:.3} to {max:.3} where finer steps do not mend it: \
-                     its velocity jumps there, or a profile squeezes too much"
+                    "stroke {stroke} scales volumes by {min:.3} to {max:.3}, and finer steps do not help: \
+                     its velocity is discontinuous, or its profile compresses too much"
                 )
             }
             Self::LockCrossings { triangles } => {
                 write!(f, "the lock made {triangles} triangles cross; refine more before locking")
             }
-            Self::FacetError { share } => {
-                write!(f, "the flat triangles alone are off by {:.3} % of the volume; refine more", 100.0 * share)
+            Self::FacetError { fraction } => {
+                write!(f, "the facet error is {:.3} % of the volume; refine more", 100.0 * fraction)
             }
             Self::LockShift { ratio } => {
                 write!(
@@ -145,9 +165,10 @@ impl fmt::Display for Note {
             Self::StampMissed { stroke } => write!(f, "the stamp of stroke {stroke} touched nothing"),
             Self::StampThrough { stroke } => write!(
                 f,
-                "the stamp of stroke {stroke} went through the surface to its far side, which then lies on itself; press less deep"
+                "the stamp of stroke {stroke} went through the surface and folded it onto its far side; \
+                 press less deeply"
             ),
-            Self::LockSkipped => f.write_str("the lock was skipped: nothing moved that the volume depends on"),
+            Self::LockSkipped => f.write_str("the lock was skipped: no displacement changes the volume"),
             Self::LockNeedsClosed => f.write_str("the lock was skipped: the mesh is open and has no volume"),
         }
     }

@@ -1,7 +1,8 @@
-//! Refinement: splits the base of the flow until its flat triangles stand for the curved image well enough.
+//! Refinement: splits the base of the flow until its flat triangles approximate the curved image.
 //!
-//! Three things split an edge: the image of its midpoint lies far from the middle of its ends; its image is long; or its
-//! triangle holds so much of the volume between flat and curved that the whole would miss the volume asked for.
+//! An edge is split for one of three reasons: its midpoint deviates from the mean of the images of
+//! its ends; its image is too long; or its triangle contributes so much to the facet error that the
+//! mesh would miss its volume.
 
 mod criteria;
 mod refinement;
@@ -24,16 +25,19 @@ use super::{
 use crate::flow::Stroke;
 use refinement::MAX_ROUNDS;
 
-/// A round aims at this share of the volume error allowed, so that what it leaves, being re-estimated on finer triangles, does
-/// not call for one more round that splits a handful. Larger takes more rounds; smaller splits more than asked.
+/// A round aims at this fraction of the allowed facet error. The next round estimates the error again
+/// on finer triangles, and the margin keeps it from splitting a few triangles more. A larger value
+/// takes more rounds; a smaller value splits more than necessary.
 const AIM: f64 = 0.5;
 
-/// No round tries to leave less than this share of the error it found: splitting everything leaves a quarter of it, and the
-/// last triangles before that bring next to nothing.
+/// No round aims at less than this fraction of the error it found. To split all triangles leaves a
+/// quarter of the error. A larger value takes more rounds; a smaller value splits triangles that
+/// contribute almost nothing.
 const LEAST_LEFT: f64 = 1.0 / 3.0;
 
-/// Edges of a triangle that is split for its volume, whose midpoint lies this share of the largest off its plane, are split.
-/// Larger splits one edge a triangle and makes slivers; smaller splits flat directions of cylinders.
+/// A triangle that is split for its volume splits the edges whose midpoints are off its plane by at
+/// least this fraction of the largest offset. A larger value splits one edge of each triangle and
+/// makes slivers; a smaller value also splits the flat direction of cylinders.
 const SIGNIFICANT: f64 = 0.5;
 
 /// Result of the refinement after a stroke.
@@ -51,7 +55,7 @@ impl From<FacetError> for Refined {
     }
 }
 
-/// Estimates the facet error of the image under `strokes`, the last of which has just acted, and splits nothing.
+/// Estimates the facet error of the image after the last of `strokes`, without splits.
 pub(crate) fn estimate_facet_error(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
@@ -61,7 +65,7 @@ pub(crate) fn estimate_facet_error(
     mesh.estimate_facet_error(strokes, monitor)
 }
 
-/// Splits until the image under `strokes`, the last of which has just acted, meets the criteria.
+/// Splits until the image after the last of `strokes` meets the criteria.
 pub(crate) fn refine(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
@@ -86,8 +90,8 @@ pub(crate) fn refine(
     Ok(refined)
 }
 
-/// Of the triangles that have `changed` the edges that deviate or are too long, and of all the edges of those that hold too much
-/// of the facet error.
+/// The edges of changed triangles that deviate or are too long, and the curved edges of the triangles
+/// that contribute most to the facet error.
 fn edges_to_split(mesh: &mut Tessellation, criteria: &Criteria, estimate: &FacetError) -> ChosenEdges {
     let mut chosen = ChosenEdges::default();
     for &index in &estimate.changed {
@@ -95,8 +99,8 @@ fn edges_to_split(mesh: &mut Tessellation, criteria: &Criteria, estimate: &Facet
         let (deviations, lengths) = (curved.deviations(), curved.lengths());
         let base_lengths = edge_lengths(&mesh.base_of(index as usize));
         for edge in 0..3 {
-            let is_wanted = deviations[edge].length() > criteria.deviation || lengths[edge] > criteria.max_edge;
-            if is_wanted && base_lengths[edge] > criteria.shortest {
+            let is_coarse = deviations[edge].length() > criteria.deviation || lengths[edge] > criteria.max_edge;
+            if is_coarse && base_lengths[edge] > criteria.shortest {
                 chosen.choose(mesh, 3 * index + edge as u32);
             }
         }
@@ -113,7 +117,7 @@ fn edges_to_split(mesh: &mut Tessellation, criteria: &Criteria, estimate: &Facet
     chosen
 }
 
-/// The fewest triangles, by their share of the facet error, whose split should bring it well below what is `allowed`.
+/// The fewest triangles whose split is expected to bring the facet error well below the `allowed` one.
 fn triangles_to_split(gains: &[f64], facet_error: f64, allowed: f64) -> Vec<usize> {
     if facet_error.abs() <= allowed {
         return Vec::new();
@@ -121,10 +125,10 @@ fn triangles_to_split(gains: &[f64], facet_error: f64, allowed: f64) -> Vec<usiz
     let goal = (AIM * allowed).max(LEAST_LEFT * facet_error.abs());
     let mut order: Vec<usize> = (0..gains.len()).filter(|&index| gains[index] != 0.0).collect();
     order.par_sort_unstable_by(|&a, &b| gains[b].abs().total_cmp(&gains[a].abs()).then(a.cmp(&b)));
-    let mut left = facet_error;
+    let mut remaining = facet_error;
     let enough = order.iter().position(|&index| {
-        left -= gains[index];
-        left.abs() <= goal
+        remaining -= gains[index];
+        remaining.abs() <= goal
     });
     order.truncate(enough.map_or(order.len(), |last| last + 1));
     order

@@ -1,13 +1,17 @@
 //! A mesh at rest and its image under the flow, split together.
 //!
-//! A vertex that is inserted lies in the middle of an edge of the *base*, and its image is where the flow carries that point,
-//! never the middle of the images: that is what brings the surface closer to the true image. The base is the mesh at rest
-//! until something that is no flow acts: then the image [is frozen](Tessellation::freeze) and becomes the base of what follows,
-//! while the rest goes on to tell where every vertex came from.
+//! A new vertex is the midpoint of an edge of the *base*, and its image is the flow map of that
+//! midpoint, not the midpoint of the images. That is how a split brings the surface closer to the
+//! true image. The base is the mesh at rest until a stamp acts. Then the image is
+//! [frozen](Tessellation::freeze) and becomes the base of the strokes that follow, and the rest
+//! keeps the origin of every vertex.
 //!
-//! A stroke touches a part of the surface, and what is done for it should cost what that part costs. So the triangles that have
-//! [changed](Tessellation::take_changed) are listed, a triangle that is split keeps its number for the first of its parts, and
-//! every edge knows the half-edges along it.
+//! The cost of a stroke should be proportional to the part of the surface that it touches.
+//! Therefore the tessellation lists the triangles that have changed, a split triangle keeps its
+//! index for the first of its parts, and each edge stores its half-edges.
+//!
+//! The tessellation also owns the estimate of the facet error. The criteria that choose edges to
+//! split belong to [`refine`](super::refine).
 
 mod blocks;
 mod chosen_edges;
@@ -37,43 +41,44 @@ use crate::flow::{
     advection::{Advected, advect_once, bits},
 };
 
-/// The triangle is one of the mesh as read.
+/// In `part_of`: the triangle is a whole triangle of the input mesh.
 const WHOLE: u32 = u32::MAX;
 
-/// A triangle whose height is less than this share of its longest edge is a sliver. Larger takes what the image needs long
-/// and thin at rest for slivers; smaller lets real ones get thinner before they are halved.
+/// A triangle is a sliver if its height is less than this fraction of its longest edge. A larger value
+/// includes triangles that the image needs long and thin at rest; a smaller value lets slivers get
+/// thinner before they are bisected.
 const SLIVER: f64 = 0.03;
 
 /// A mesh at rest, its base and image, and the midpoints of those edges that are followed through the flow.
 #[derive(Debug, Clone)]
 pub(crate) struct Tessellation {
-    /// Where the vertices lie on the mesh as read.
+    /// Positions of the vertices on the input mesh.
     pub(crate) rest: Vec<DVec3>,
-    /// Where the flow that leads to the image set out.
+    /// Positions from which the flow leads to the image.
     pub(crate) base: Vec<DVec3>,
     pub(crate) image: Vec<DVec3>,
-    /// Vertex indices; those of the mesh as read, or their first parts, come first.
+    /// Vertex indices. The input triangles, or their first parts, come first.
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// By triangle, its number among the parts.
+    /// Index into `parts` for each triangle, or [`WHOLE`].
     part_of: Vec<u32>,
     parts: Vec<Part>,
     edges: EdgeCycles,
     midpoints: Midpoints,
-    /// By triangle, the volume between it and its curved image, as far as that is known.
+    /// Volume gained by one split of each triangle; zero while its midpoints are not followed.
     gains: Vec<f64>,
-    /// Sums of these, by block of triangles.
+    /// Sums of `gains` over blocks of triangles.
     gain_sums: Blocks<f64>,
-    /// By block of triangles.
+    /// Boxes and volumes of blocks of triangles.
     shapes: Blocks<Shape>,
     /// Boxes around the images of each block of vertices.
     vertex_bounds: Blocks<Aabb>,
-    /// In which the volumes of the shapes are.
+    /// Center of the volumes in `shapes`.
     frame: VolumeFrame,
-    /// Triangles whose images have changed since they were last taken; in any order, some more than once.
+    /// Triangles whose images have changed since the last estimate, in any order and with repetitions.
     changed: Vec<u32>,
 }
 
-/// What of a triangle of the mesh as read a triangle is.
+/// The part of an input triangle that a triangle covers.
 #[derive(Debug, Clone, Copy)]
 struct Part {
     parent: u32,
@@ -81,17 +86,17 @@ struct Part {
     corners: [DVec3; 3],
 }
 
-/// What a stroke did to the images.
+/// Result of advecting the image through one stroke.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AdvectedMesh {
     /// Evaluations of the field.
     pub(crate) evaluations: u64,
-    /// Vertices that it moved.
+    /// Number of vertices that the stroke moved.
     pub(crate) moved: usize,
 }
 
 impl Tessellation {
-    /// The triangles of `mesh` as they are, at rest; `topology` is that of `mesh`.
+    /// The unsplit triangles of `mesh`, at rest. `topology` is that of `mesh`.
     pub(crate) fn new(mesh: &TriMesh, topology: &Topology) -> Self {
         let count = mesh.triangles.len();
         Self {
@@ -112,7 +117,7 @@ impl Tessellation {
         }
     }
 
-    /// Makes the image the base of what follows, whatever has become of it; no midpoint is followed any more.
+    /// Makes the image the base of the strokes that follow, and stops following all midpoints.
     pub(crate) fn freeze(&mut self) {
         self.base.clone_from(&self.image);
         if !self.midpoints.base.is_empty() {
@@ -121,13 +126,13 @@ impl Tessellation {
             self.midpoints = Midpoints::none(of_half_edge);
         }
         self.gains.fill(0.0);
-        self.gain_sums.forget_all();
-        self.shapes.forget_all();
-        self.vertex_bounds.forget_all();
+        self.gain_sums.clear();
+        self.shapes.clear();
+        self.vertex_bounds.clear();
         self.changed.clear();
     }
 
-    /// `mesh`, of which this is the tessellation, deformed, and the same triangles at rest.
+    /// The deformed mesh, and the same triangles at rest. `mesh` is the input mesh.
     pub(crate) fn into_meshes(self, mesh: &TriMesh) -> (TriMesh, TriMesh) {
         let (rest, image) = match self.into_subdivision() {
             (Some(subdivision), image) => (mesh.subdivided(&subdivision), image),
@@ -138,7 +143,7 @@ impl Tessellation {
         (mesh, rest)
     }
 
-    /// The rest surface, as finely split as this, if it is split at all; and the images of its vertices.
+    /// The split of the rest surface, or `None` if there is none, and the images of its vertices.
     fn into_subdivision(self) -> (Option<Subdivision>, Vec<DVec3>) {
         if self.parts.is_empty() {
             return (None, self.image);
@@ -151,7 +156,7 @@ impl Tessellation {
         (Some(Subdivision { triangles, positions: self.rest }), self.image)
     }
 
-    /// The triangle of the mesh as read that holds this one.
+    /// Index of the input triangle that contains this triangle.
     pub(crate) fn parent(&self, triangle: usize) -> u32 {
         self.part(triangle).parent
     }
@@ -163,7 +168,7 @@ impl Tessellation {
         }
     }
 
-    /// Carries all images through one more stroke.
+    /// Advects all images through one more stroke.
     pub(crate) fn advect(&mut self, stroke: &Stroke, monitor: &dyn Monitor) -> Result<AdvectedMesh, Cancelled> {
         let near = self.triangles_in(stroke.reach());
         let vertices = advect_images(&mut self.image, &mut self.vertex_bounds, stroke, monitor)?;
@@ -180,21 +185,21 @@ impl Tessellation {
         Ok(AdvectedMesh { evaluations: vertices.evaluations + midpoints.evaluations, moved: vertices.moved.len() })
     }
 
-    /// Remembers that triangles have changed.
+    /// Records that triangles have changed.
     fn report_changed(&mut self, triangles: &[u32]) {
         self.changed.extend_from_slice(triangles);
         for &index in triangles {
-            self.shapes.forget(index as usize);
-            self.gain_sums.forget(index as usize);
+            self.shapes.invalidate(index as usize);
+            self.gain_sums.invalidate(index as usize);
         }
     }
 
-    /// The half-edges along the edge of one of them.
+    /// The half-edge that follows in the cycle around its edge.
     pub(crate) fn next_around(&self, half_edge: u32) -> u32 {
         self.edges.next(half_edge)
     }
 
-    /// Whether a vertex of a triangle is not where it is in the base.
+    /// Whether a vertex of a triangle has moved from the base.
     pub(crate) fn has_moved(&self, triangle: usize) -> bool {
         self.triangles[triangle].iter().any(|&vertex| self.image[vertex as usize] != self.base[vertex as usize])
     }
@@ -204,19 +209,19 @@ impl Tessellation {
         self.triangles[triangle].map(|vertex| self.image[vertex as usize])
     }
 
-    /// Corners of a triangle in the base.
+    /// Base positions of the corners of a triangle.
     pub(crate) fn base_of(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].map(|vertex| self.base[vertex as usize])
     }
 
-    /// Whether a triangle of the base is much lower than long.
+    /// Whether a triangle is a [sliver](SLIVER) in the base.
     pub(crate) fn is_sliver_in_base(&self, triangle: usize) -> bool {
         let [a, b, c] = self.base_of(triangle);
         let longest = self.longest_base_edge(triangle);
         (b - a).cross(c - a).length() < SLIVER * longest * longest
     }
 
-    /// Length in the base of the longest edge of a triangle.
+    /// Length of the longest edge of a triangle in the base.
     pub(crate) fn longest_base_edge(&self, triangle: usize) -> f64 {
         edge_lengths(&self.base_of(triangle)).into_iter().fold(0.0, f64::max)
     }
@@ -230,24 +235,24 @@ impl Tessellation {
         triangles.iter().map(area).sum()
     }
 
-    /// The vertices from which and to which a half-edge runs.
+    /// The first and the last vertex of a half-edge.
     fn ends(&self, half_edge: u32) -> [u32; 2] {
         let triangle = self.triangles[half_edge as usize / 3];
         [triangle[half_edge as usize % 3], triangle[(half_edge as usize + 1) % 3]]
     }
 }
 
-/// Carries images through a stroke, of which `bounds` says where each block is.
+/// Advects images through a stroke. `bounds` holds a box for each block of images.
 fn advect_images(
     image: &mut [DVec3],
     bounds: &mut Blocks<Aabb>,
     stroke: &Stroke,
     monitor: &dyn Monitor,
 ) -> Result<Advected, Cancelled> {
-    let boxes: Vec<Aabb> = bounds.know(image.len(), |block| Aabb::of(image[block].iter().copied())).iter().collect();
-    let passage = advect_once(image, &boxes, stroke, monitor)?;
-    passage.moved.iter().for_each(|&index| bounds.forget(index as usize));
-    Ok(passage)
+    let boxes: Vec<Aabb> = bounds.fill(image.len(), |block| Aabb::of(image[block].iter().copied())).iter().collect();
+    let advected = advect_once(image, &boxes, stroke, monitor)?;
+    advected.moved.iter().for_each(|&index| bounds.invalidate(index as usize));
+    Ok(advected)
 }
 
 /// The number of points that differ in any bit.
@@ -255,11 +260,11 @@ pub(crate) fn count_different(before: &[DVec3], after: &[DVec3]) -> usize {
     before.iter().zip(after).filter(|&(&before, &after)| bits(before) != bits(after)).count()
 }
 
-/// For each of `count` things whether it is among these.
+/// Flags of length `count` that are true at `indices`.
 fn flags(count: usize, indices: &[u32]) -> Vec<bool> {
-    let mut is_among = vec![false; count];
-    indices.iter().for_each(|&index| is_among[index as usize] = true);
-    is_among
+    let mut flags = vec![false; count];
+    indices.iter().for_each(|&index| flags[index as usize] = true);
+    flags
 }
 
 /// A compensated sum.
@@ -269,7 +274,7 @@ fn sum(terms: impl Iterator<Item = f64>) -> f64 {
     sum.value()
 }
 
-/// The middle of an edge; it has the same bits from either end.
+/// The midpoint of an edge. Both orders of the ends give the same bits.
 fn middle([a, b]: [u32; 2], positions: &[DVec3]) -> DVec3 {
     0.5 * (positions[a as usize] + positions[b as usize])
 }

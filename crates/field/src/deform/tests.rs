@@ -17,7 +17,7 @@ const REFINED: DeformOptions = DeformOptions {
     lock: false,
 };
 
-/// The bare method on the triangles as they are.
+/// Neither refined nor locked.
 const BARE: DeformOptions = DeformOptions { refine: None, lock: false };
 
 fn ball(radius: f64, support: f64) -> Arc<Tool> {
@@ -39,14 +39,14 @@ fn volume_change(deformed: &Deformed) -> f64 {
 }
 
 #[test]
-fn the_bare_facet_error_of_a_press_is_the_known_one() {
+fn golden_facet_error_of_a_press() {
     let deformed = run(&primitives::icosphere(1.0, 4), &[press(1.0 / 64.0)], &BARE);
-    // The golden figure has seven digits; the step leaves less than 1e-9.
+    // The golden value has seven digits; the error of the step is less than 1e-9.
     assert!((volume_change(&deformed) - 9.331199e-3).abs() < 1e-8, "{}", volume_change(&deformed));
 }
 
 #[test]
-fn the_bare_facet_error_of_a_twist_is_the_known_one() {
+fn golden_facet_error_of_a_twist() {
     let cube = primitives::box_mesh(DVec3::ONE, [40, 60, 60]);
     for rate in [0.5 * FRAC_PI_2, -0.5 * FRAC_PI_2] {
         let twist = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Z, rate).unwrap());
@@ -56,22 +56,23 @@ fn the_bare_facet_error_of_a_twist_is_the_known_one() {
 }
 
 #[test]
-fn the_estimated_facet_error_is_the_volume_that_refinement_gives_back() {
+fn estimated_facet_error_matches_the_volume_gained_by_refinement() {
     let deformed = run(&primitives::icosphere(1.0, 4), &[press(0.0625)], &BARE);
     let estimate = deformed.receipt.facet_error.unwrap() / deformed.receipt.volume_before.unwrap();
-    // The flat triangles have too much volume by what they lack with the sign turned; asymptotics hold within a fifth here.
+    // The facet error is the change of volume with the opposite sign. The estimate is asymptotic, and
+    // holds within a fifth on this mesh.
     assert!((estimate + volume_change(&deformed)).abs() < 0.2 * estimate.abs(), "{estimate}");
 }
 
 #[test]
-fn a_tighter_volume_buys_a_smaller_drift_with_more_triangles() {
+fn a_smaller_volume_tolerance_reduces_the_drift() {
     let sphere = primitives::icosphere(1.0, 4);
     let mut last = (f64::INFINITY, 0);
     for volume in [1e-3, 1e-4, 1e-5] {
         let refine = RefineOptions { volume, deviation: 1.0, max_edge: Some(10.0), ..RefineOptions::default() };
         let deformed = run(&sphere, &[press(0.125)], &DeformOptions { refine: Some(refine), lock: false });
         let (drift, triangles) = (volume_change(&deformed).abs(), deformed.mesh.triangles.len());
-        // The estimate is asymptotic, and the time step leaves 1e-5.
+        // The estimate is asymptotic, and the error of the time step is 1e-5.
         assert!(drift < 2.0 * volume + 1e-5, "{volume}: {drift:.1e}");
         assert!(drift < last.0 && triangles > last.1, "{volume}: {drift:.1e} with {triangles}");
         last = (drift, triangles);
@@ -79,7 +80,7 @@ fn a_tighter_volume_buys_a_smaller_drift_with_more_triangles() {
 }
 
 #[test]
-fn refinement_keeps_the_surface_closed_and_the_rest_volume() {
+fn refinement_keeps_the_mesh_closed_and_the_rest_volume() {
     let sphere = primitives::icosphere(1.0, 3);
     let deformed = run(&sphere, &[press(0.125)], &DeformOptions::default());
     assert!(deformed.receipt.inserted_vertices > 100);
@@ -98,19 +99,20 @@ fn turning_rod(profile: Profile, step: f64) -> Stroke {
     Stroke::Move(Move::new(rod, vec![Pose::at(at), turned], step).unwrap())
 }
 
-/// Some triangles are squeezed until their longest edge is the one best within the criteria.
+/// Some triangles are compressed until only their longest edge meets the criteria.
 #[test]
 fn refinement_ends_and_leaves_no_slivers() {
     let sphere = primitives::icosphere(1.0, 4);
     let deformed = run(&sphere, &[turning_rod(Profile::Quintic, 0.125)], &REFINED);
     let shortest = |mesh: &TriMesh| mesh.edge_lengths().unwrap().min;
-    // The rod's tip draws material out more than a hundredfold, so seven halvings are due; an endless split goes on to 2⁻⁴⁰.
+    // The tip of the rod stretches material more than a hundredfold, which takes seven halvings; an
+    // endless split would reach 2⁻⁴⁰.
     assert!(shortest(&deformed.rest) > shortest(&sphere) / 1024.0);
     assert!(volume_change(&deformed).abs() < 1e-3);
 }
 
 #[test]
-fn refinement_takes_the_crossings_out_of_a_smooth_stroke() {
+fn refinement_removes_the_crossings_of_a_smooth_stroke() {
     let sphere = primitives::icosphere(1.0, 4);
     let crossing_area = |options: &DeformOptions| {
         let mesh = run(&sphere, &[turning_rod(Profile::Quintic, 0.05)], options).mesh;
@@ -121,7 +123,7 @@ fn refinement_takes_the_crossings_out_of_a_smooth_stroke() {
 }
 
 #[test]
-fn the_lock_gives_the_volume_back() {
+fn the_lock_restores_the_volume() {
     let sphere = primitives::icosphere(1.0, 4);
     for refine in [None, Some(RefineOptions::default())] {
         let deformed = run(&sphere, &[press(0.125)], &DeformOptions { refine, lock: true });
@@ -132,7 +134,7 @@ fn the_lock_gives_the_volume_back() {
 }
 
 #[test]
-fn a_lock_on_an_untouched_mesh_is_skipped_and_said_so() {
+fn the_lock_of_an_untouched_mesh_is_skipped_with_a_note() {
     let far = Stroke::Move(
         Move::new(ball(0.1, 0.1), vec![Pose::at(DVec3::X * 5.0), Pose::at(DVec3::X * 6.0)], 0.125).unwrap(),
     );
@@ -144,7 +146,7 @@ fn a_lock_on_an_untouched_mesh_is_skipped_and_said_so() {
 }
 
 #[test]
-fn a_tool_smaller_than_the_triangles_is_not_missed() {
+fn refinement_finds_a_tool_smaller_than_the_triangles() {
     let cube = primitives::box_mesh(DVec3::ONE, [1, 1, 1]);
     let tip = DVec3::new(0.3, -0.1, 1.4);
     let press =
@@ -156,7 +158,7 @@ fn a_tool_smaller_than_the_triangles_is_not_missed() {
 }
 
 #[test]
-fn the_limit_on_triangles_holds_and_is_said() {
+fn the_limit_on_triangles_holds_and_is_noted() {
     let refine = RefineOptions { max_triangles: 6000, max_edge: Some(1e-3), ..RefineOptions::default() };
     let deformed =
         run(&primitives::icosphere(1.0, 4), &[press(0.125)], &DeformOptions { refine: Some(refine), lock: false });
@@ -165,7 +167,7 @@ fn the_limit_on_triangles_holds_and_is_said() {
 }
 
 #[test]
-fn an_open_mesh_is_deformed_without_a_volume() {
+fn deforms_an_open_mesh_without_a_volume() {
     let mut bowl = primitives::icosphere(1.0, 3);
     bowl.triangles.truncate(900);
     let deformed = run(&bowl, &[press(0.125)], &DeformOptions::default());
@@ -174,7 +176,7 @@ fn an_open_mesh_is_deformed_without_a_volume() {
 }
 
 #[test]
-fn an_index_out_of_range_is_refused() {
+fn rejects_an_index_out_of_range() {
     let mut sphere = primitives::icosphere(1.0, 1);
     sphere.triangles[7][2] = 99;
     let error = deform(&sphere, &[press(0.125)], &BARE, &NoProgress).unwrap_err();
@@ -192,7 +194,7 @@ fn shading_normals_turn_with_the_surface() {
     let expected = twisted.vertex_normals();
     for (corners, normals) in twisted.triangles.iter().zip(&twisted.corner.normals) {
         for (&vertex, normal) in corners.iter().zip(normals) {
-            // Single precision turns a direction by 1e-7 at most, and bends its cosine by the square of that.
+            // Single precision turns a direction by at most 1e-7, and changes its cosine by the square.
             assert!(normal.as_dvec3().normalize().dot(expected[vertex as usize]) > 1.0 - 1e-9);
         }
     }
@@ -211,7 +213,7 @@ fn threads_do_not_change_the_bits() {
 }
 
 #[test]
-fn points_alone_flow_as_the_vertices_do() {
+fn advects_points_like_vertices() {
     let sphere = primitives::icosphere(1.0, 3);
     let strokes = [press(0.125)];
     let deformed = run(&sphere, &strokes, &REFINED);
@@ -220,14 +222,14 @@ fn points_alone_flow_as_the_vertices_do() {
 }
 
 #[test]
-fn a_stroke_counts_the_vertices_that_moved_and_no_others() {
+fn a_stroke_counts_only_the_vertices_that_moved() {
     let receipt = run(&primitives::icosphere(1.0, 3), &[press(0.125)], &REFINED).receipt;
     assert!(receipt.inserted_vertices > 100);
     assert_eq!(receipt.strokes[0].moved, receipt.moved_vertices);
 }
 
 #[test]
-fn volume_changes_of_a_mesh_inside_out_are_those_of_the_mesh_with_the_sign_turned() {
+fn volume_changes_of_an_inverted_mesh_have_the_opposite_sign() {
     let sphere = primitives::icosphere(1.0, 3);
     let mut turned = sphere.clone();
     turned.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
@@ -238,7 +240,7 @@ fn volume_changes_of_a_mesh_inside_out_are_those_of_the_mesh_with_the_sign_turne
 }
 
 #[test]
-fn two_sides_without_a_volume_deform_without_one() {
+fn deforms_a_closed_mesh_of_zero_volume() {
     let positions = vec![DVec3::new(-1.0, -1.0, 0.9), DVec3::new(1.0, -1.0, 0.9), DVec3::new(0.0, 1.5, 0.9)];
     let sheet = TriMesh::new(positions, vec![[0, 1, 2], [0, 2, 1]]);
     let deformed = run(&sheet, &[press(0.125)], &DeformOptions::default());
@@ -248,7 +250,7 @@ fn two_sides_without_a_volume_deform_without_one() {
 }
 
 #[test]
-fn a_volume_beyond_all_numbers_is_refused() {
+fn rejects_a_volume_that_overflows() {
     let sphere = primitives::icosphere(1e150, 2);
     assert_eq!(deform(&sphere, &[], &BARE, &NoProgress).unwrap_err(), DeformError::VolumeOverflow);
 }

@@ -1,4 +1,4 @@
-//! The flow map: points carried through strokes, in parallel, each on its own.
+//! Advection: the flow map of strokes, applied to points in parallel.
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
@@ -8,48 +8,62 @@ use rayon::prelude::*;
 
 use crate::flow::Stroke;
 
-/// Points that one task carries through all strokes. Larger balances worse and hears a cancellation later; smaller fills the
-/// lanes of the kernel less well.
+/// Points that one task advects through all strokes. A larger value balances the load less well and
+/// notices a cancellation later; a smaller value fills the lanes of the kernel less well.
 pub(crate) const CHUNK: usize = 256;
 
-/// Where the strokes, one after the other, carry `points`. Points that nothing touches keep their bits, and the result does
-/// not depend on the number of threads nor on the order of the points.
+/// Advects `points` through the strokes, one after the other.
+///
+/// A point that no stroke touches keeps its bits. The result does not depend on the number of threads
+/// or on the order of the points.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_field::{Stroke, Twist, advect_points};
+/// use isochore_mesh::NoProgress;
+///
+/// let twist = |rate| Twist::new(DVec3::ZERO, DVec3::Z, rate).map(Stroke::Twist);
+/// let points = [DVec3::new(0.3, -0.2, 0.7)];
+/// let images = advect_points(&points, &[twist(1.0)?, twist(-1.0)?], &NoProgress)?;
+/// assert!(images[0].distance(points[0]) < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
-/// [`AdvectError`].
+/// [`AdvectError::Stamp`] if a stroke is a stamp, [`AdvectError::Cancelled`] if `monitor` cancels.
 pub fn advect_points(points: &[DVec3], strokes: &[Stroke], monitor: &dyn Monitor) -> Result<Vec<DVec3>, AdvectError> {
     if let Some(stroke) = strokes.iter().position(|stroke| matches!(stroke, Stroke::Stamp(_))) {
         return Err(AdvectError::Stamp { stroke });
     }
-    let mut carried = points.to_vec();
-    advect(&mut carried, strokes, monitor)?;
-    Ok(carried)
+    let mut images = points.to_vec();
+    advect(&mut images, strokes, monitor)?;
+    Ok(images)
 }
 
-/// Why points cannot be carried.
+/// Errors of [`advect_points`].
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum AdvectError {
-    /// The monitor stopped it.
+    /// The monitor cancelled the advection.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// A stroke needs a surface.
-    #[error("stroke {stroke} is a stamp, which presses into a surface and raises it elsewhere; points alone have none")]
+    /// A stroke is a stamp, which needs a surface.
+    #[error("stroke {stroke} is a stamp, which needs a surface and cannot advect points alone; remove it")]
     Stamp {
         /// Index of the stroke, from 0.
         stroke: usize,
     },
 }
 
-/// What one stroke did to points.
+/// Result of advecting points through one stroke.
 #[derive(Debug, Default)]
 pub(crate) struct Advected {
     /// Evaluations of the field.
     pub(crate) evaluations: u64,
-    /// Indices of the points that it moved, in ascending order.
+    /// Indices of the moved points, in ascending order.
     pub(crate) moved: Vec<u32>,
 }
 
-/// Carries `points` through `strokes` in place, and returns the number of evaluations of the fields.
+/// Advects `points` through `strokes` in place and returns the number of evaluations of the fields.
 pub(crate) fn advect(points: &mut [DVec3], strokes: &[Stroke], monitor: &dyn Monitor) -> Result<u64, Cancelled> {
     let reaches: Vec<Aabb> = strokes.iter().map(Stroke::reach).collect();
     let evaluations = AtomicU64::new(0);
@@ -65,7 +79,7 @@ pub(crate) fn advect(points: &mut [DVec3], strokes: &[Stroke], monitor: &dyn Mon
     Ok(evaluations.into_inner())
 }
 
-/// Carries `points` through one stroke in place. `bounds` are the boxes around each [`CHUNK`] of them.
+/// Advects `points` through one stroke in place. `bounds` holds a box around each [`CHUNK`] of points.
 pub(crate) fn advect_once(
     points: &mut [DVec3],
     bounds: &[Aabb],
@@ -73,23 +87,23 @@ pub(crate) fn advect_once(
     monitor: &dyn Monitor,
 ) -> Result<Advected, Cancelled> {
     let reach = stroke.reach();
-    let passages = for_each_chunk(points, monitor, |index, chunk| {
+    let chunks = for_each_chunk(points, monitor, |index, chunk| {
         if !bounds[index].overlaps(reach) {
             return Advected::default();
         }
         let before = chunk.to_vec();
         let evaluations = stroke.advect_chunk(chunk);
-        let is_moved = |place: &usize| bits(before[*place]) != bits(chunk[*place]);
-        let moved = (0..chunk.len()).filter(is_moved).map(|place| (index * CHUNK + place) as u32).collect();
+        let is_moved = |point: &usize| bits(before[*point]) != bits(chunk[*point]);
+        let moved = (0..chunk.len()).filter(is_moved).map(|point| (index * CHUNK + point) as u32).collect();
         Advected { evaluations, moved }
     })?;
     Ok(Advected {
-        evaluations: passages.iter().map(|passage| passage.evaluations).sum(),
-        moved: passages.into_iter().flat_map(|passage| passage.moved).collect(),
+        evaluations: chunks.iter().map(|chunk| chunk.evaluations).sum(),
+        moved: chunks.into_iter().flat_map(|chunk| chunk.moved).collect(),
     })
 }
 
-/// What `work` gives for each chunk, by its number.
+/// The results of `work` for all chunks, in order. `work` receives the index of the chunk.
 fn for_each_chunk<T: Send>(
     points: &mut [DVec3],
     monitor: &dyn Monitor,
@@ -110,7 +124,7 @@ fn bounds(points: &[DVec3]) -> Aabb {
     Aabb::of(points.iter().copied())
 }
 
-/// By which the zeros of either sign are told apart.
+/// Bit patterns, so that +0 and −0 compare different.
 pub(crate) fn bits(point: DVec3) -> [u64; 3] {
     point.to_array().map(f64::to_bits)
 }

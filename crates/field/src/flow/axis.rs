@@ -1,4 +1,4 @@
-//! Rotation about an axis by an angle that varies from point to point.
+//! An axis, and rotations about it by an angle that varies from point to point.
 
 use glam::DVec3;
 
@@ -21,7 +21,7 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// The axis through `origin` along `direction`, of any length but zero.
+    /// The axis through `origin` along `direction`, of any nonzero length.
     pub(super) fn new(origin: DVec3, direction: DVec3) -> Result<Self, AxisError> {
         if !origin.is_finite() {
             return Err(AxisError::NotFinite("the origin"));
@@ -29,7 +29,7 @@ impl Axis {
         if !direction.is_finite() {
             return Err(AxisError::NotFinite("the axis"));
         }
-        // Scaled first, so that neither tiny nor huge axes leave the range in which squares are representable.
+        // Scaled first, so that the squares of tiny and huge components are representable.
         let largest = direction.abs().max_element();
         if largest == 0.0 {
             return Err(AxisError::Zero);
@@ -37,13 +37,13 @@ impl Axis {
         Ok(Self { origin, direction: (direction / largest).normalize() })
     }
 
-    /// `point` turned by `angle` radians, right-handed. A point that does not turn keeps its bits.
+    /// `point` rotated by `angle` radians, right-handed. An angle of zero keeps the bits.
     pub(super) fn rotated(&self, point: DVec3, angle: f64) -> DVec3 {
         if angle == 0.0 {
             return point;
         }
         let arm = (point - self.origin).reject_from_normalized(self.direction);
-        // 1 − cos as 2 sin² of the half angle: no cancellation at small angles.
+        // 1 − cos as 2 sin² of the half angle avoids cancellation at small angles.
         let half_sine = libm::sin(0.5 * angle);
         point - 2.0 * half_sine * half_sine * arm + libm::sin(angle) * self.direction.cross(arm)
     }

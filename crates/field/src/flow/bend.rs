@@ -1,7 +1,8 @@
 //! The bend, by its exact flow.
 //!
-//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, equation 12.6 with unit rate. Every point keeps its
-//! distance from the origin, so its angular velocity never changes and the flow is a rotation.
+//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, equation 12.6 with unit
+//! rate. A point keeps its distance from the origin, so its angular velocity is constant and its path
+//! is a rotation.
 
 use glam::DVec3;
 use isochore_mesh::Aabb;
@@ -9,8 +10,23 @@ use isochore_mesh::Aabb;
 use super::axis::{Axis, AxisError};
 use crate::fields::swirl_field::{SwirlField, SwirlLaw};
 
-/// Spheres about an origin turn about an axis, by an angle proportional to their squared radius: a swirl, which bends a bar
-/// across the axis into an arm of a spiral.
+/// A rotation of each sphere about an origin, by an angle proportional to its squared radius. It bends a
+/// bar across the axis into an arm of a spiral.
+///
+/// ```
+/// use std::f64::consts::PI;
+///
+/// use glam::DVec3;
+/// use isochore_field::{Bend, Stroke};
+///
+/// let bend = Stroke::Bend(Bend::new(DVec3::ZERO, DVec3::Z, PI)?);
+/// let mut points = [0.5 * DVec3::X, DVec3::X];
+/// bend.advect(&mut points);
+/// // A quarter of the squared radius turns by a quarter of the angle.
+/// assert!(points[0].distance(DVec3::new(0.5, 0.5, 0.0) / 2.0_f64.sqrt()) < 1e-15);
+/// assert!(points[1].distance(-DVec3::X) < 1e-15);
+/// # Ok::<(), isochore_field::AxisError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bend {
     axis: Axis,
@@ -18,11 +34,11 @@ pub struct Bend {
 }
 
 impl Bend {
-    /// The bend about `origin` and `axis` (any length but zero): a point x turns, right-handed, by
-    /// `radians_per_unit2` · |x − origin|².
+    /// The bend about the line through `origin` along `axis`, of any nonzero length. A point x turns,
+    /// right-handed, by `radians_per_unit2` · |x − origin|².
     ///
     /// # Errors
-    /// [`AxisError::Zero`], [`AxisError::NotFinite`].
+    /// [`AxisError::Zero`] if `axis` is zero, [`AxisError::NotFinite`] if an argument is not finite.
     pub fn new(origin: DVec3, axis: DVec3, radians_per_unit2: f64) -> Result<Self, AxisError> {
         if !radians_per_unit2.is_finite() {
             return Err(AxisError::NotFinite("the rate of the bend"));
@@ -38,7 +54,7 @@ impl Bend {
         points.len() as u64
     }
 
-    /// The field whose flow this is, for what lies in a box.
+    /// The field whose flow this is, for points in a box.
     pub(super) fn field(&self, bounds: Aabb) -> SwirlField {
         let Axis { origin, direction } = self.axis;
         SwirlField { origin, direction, law: SwirlLaw::SquaredDistance, rate: self.radians_per_unit2, bounds }
@@ -55,7 +71,7 @@ mod tests {
 
     #[test]
     fn golden_flow() {
-        // Equation 12.6 as printed turns at −5|x|², here for half a unit of time.
+        // Equation 12.6 as printed turns at −5|x|² per unit of time; this is half a unit.
         let mut points = [DVec3::new(0.3, -0.4, 0.5)];
         Bend::new(DVec3::ZERO, DVec3::new(1.0, 2.0, 2.0), -2.5).unwrap().advect_chunk(&mut points);
         let golden = DVec3::new(-0.436756416361175, -0.081686472536101, 0.550064680716689);

@@ -1,8 +1,8 @@
-//! The flow of a field that changes with time, by Runge-Kutta steps of equal length in world coordinates.
+//! The flow of fields that change with time, by Runge-Kutta steps of equal length in world coordinates.
 //!
-//! A point that is in the rigid core of a body at the beginning, the middle and the end of a step moves with that body, in
-//! closed form. A point whose four stages all lie beyond the support rests and keeps its bits; sleeping only skips steps
-//! through which a point is certain to rest, so it changes no bit.
+//! A point whose four stages are in the rigid core of one body moves with that body, in closed form. A
+//! point whose four stages are all beyond the support rests and keeps its bits. A sleeping point skips
+//! steps through which it certainly rests, so sleep changes no bits.
 
 use std::sync::Arc;
 
@@ -19,7 +19,25 @@ use crate::{
     flow::rk4::{Rk4Block, rk4_step},
 };
 
-/// Fields that act one after the other, each over its own time.
+/// A sequence of fields, each of which acts over its own time.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use glam::DVec3;
+/// use isochore_field::{FieldStroke, Profile, Ring, RingShape, Stroke, advect_points};
+/// use isochore_mesh::NoProgress;
+///
+/// let shape = RingShape {
+///     center: DVec3::ZERO, axis: DVec3::Z, major: 1.0, minor: 0.2, support: 0.3, profile: Profile::Quintic,
+/// };
+/// let ring = Ring::new(shape, 0.5)?;
+/// let stroke = Stroke::Field(FieldStroke::new(vec![Arc::new(ring)], 0.125)?);
+/// // A point in the rigid core moves with the ring.
+/// let images = advect_points(&[DVec3::X], &[stroke], &NoProgress)?;
+/// assert!(images[0].distance(DVec3::new(1.0, 0.0, 0.5)) < 1e-14);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct FieldStroke {
     spans: Vec<Span>,
@@ -46,23 +64,23 @@ pub enum FieldStrokeError {
     },
 }
 
-/// A field and the time, from 0 to 1, at which it ends.
+/// A field and its end time, from 0 to 1.
 #[derive(Debug, Clone)]
 struct Span {
     field: Arc<dyn MovingField>,
     end: f64,
 }
 
-/// A span cut into steps.
+/// A span in steps of the integrator.
 #[derive(Debug, Clone)]
 struct Leg {
-    /// The beginning and the middle of every step, and the end of the last.
+    /// The start and the midpoint of every step, and the end of the last.
     instants: Vec<Instant>,
     step_time: f64,
     approach_speed: f64,
 }
 
-/// The field at one time, and the boxes outside which it is zero.
+/// The field at one time, and boxes outside all of which it is zero.
 #[derive(Debug, Clone)]
 struct Instant {
     field: Arc<dyn Field>,
@@ -74,7 +92,7 @@ impl Instant {
         Self { parts: field.parts(), field: Arc::from(field) }
     }
 
-    /// How far a point is from the nearest part at least; zero within one.
+    /// Lower bound on the distance from a point to the nearest part; zero inside a part.
     fn clearance(&self, point: DVec3) -> f64 {
         self.parts.iter().map(|part| part.distance(point)).fold(f64::INFINITY, f64::min)
     }
@@ -83,11 +101,13 @@ impl Instant {
 impl FieldStroke {
     /// The flow of `fields`, one after the other.
     ///
-    /// `step` bounds the travel of what a field carries fully in one step of the integrator, as a fraction of the field's
-    /// [feature size](MovingField::feature_size).
+    /// `step` bounds the travel of a field's core in one step of the integrator, as a fraction of the
+    /// [feature size](MovingField::feature_size) of the field.
     ///
     /// # Errors
-    /// [`FieldStrokeError`]: no field at all, a step that is no positive fraction, a way of too many steps.
+    /// - [`FieldStrokeError::Step`] if `step` is not positive and finite.
+    /// - [`FieldStrokeError::NoField`] if `fields` is empty.
+    /// - [`FieldStrokeError::TooManySteps`] if a field takes more than a million steps.
     pub fn new(fields: Vec<Arc<dyn MovingField>>, step: f64) -> Result<Self, FieldStrokeError> {
         Self::from_spans(fields.into_iter().map(|field| Span { field, end: 1.0 }).collect(), step)
     }
@@ -109,7 +129,7 @@ impl FieldStroke {
         self.spans.iter().map(|span| &span.field)
     }
 
-    /// Steps of the integrator along the whole way.
+    /// Number of steps of the integrator over all fields.
     pub fn steps(&self) -> usize {
         self.legs.iter().map(Leg::steps).sum()
     }
@@ -119,12 +139,12 @@ impl FieldStroke {
         self.step
     }
 
-    /// Length over which the fields change in a ball.
+    /// Smallest length over which a field changes in a ball.
     pub(super) fn feature_size_near(&self, center: DVec3, radius: f64) -> f64 {
         self.fields().map(|field| field.feature_size_near(center, radius)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The same fields, held back by a mask.
+    /// The same fields, multiplied by a mask.
     pub(super) fn masked(&self, mask: &Arc<Mask>, bounds: Aabb) -> Result<Self, FieldStrokeError> {
         let masked = |span: &Span| {
             let mut field = Arc::clone(&span.field);
@@ -144,12 +164,12 @@ impl FieldStroke {
         self.legs.iter().map(|leg| leg.advect_chunk(points, &mut wake)).sum()
     }
 
-    /// Whether the support may touch the ball, as it stands, at any time; false is certain.
+    /// Whether the support may touch a resting ball at any time. `false` is certain.
     pub(super) fn may_touch(&self, center: DVec3, radius: f64) -> bool {
         self.legs.iter().any(|leg| leg.may_touch(center, radius))
     }
 
-    /// Box in the world that holds the support at all times.
+    /// Box in the world that contains the support at all times.
     pub(super) fn reach(&self) -> Aabb {
         self.legs.iter().map(Leg::reach).fold(Aabb::EMPTY, Aabb::union)
     }
@@ -168,7 +188,7 @@ impl FieldStroke {
             }
             time_left -= end;
         }
-        // A part of a legal way is legal: it is shorter.
+        // A part of a valid stroke is valid: it is shorter.
         Self::from_spans(spans, self.step).unwrap_or_else(|_| self.clone())
     }
 }
@@ -212,26 +232,26 @@ impl Leg {
         evaluations
     }
 
-    /// Takes the points named in `block`, which stand where they are at the beginning of `step`, to its end.
+    /// Advects the points with indices `block` from the start of `step` to its end.
     fn step_block(&self, step: usize, block: &[u32], points: &mut [DVec3], wake: &mut [usize]) -> u64 {
         let [begin, middle, end] = [0, 1, 2].map(|half| &*self.instants[2 * step + half].field);
-        let mut carried = Rk4Block::new(FieldBlock::ZERO);
-        carried.start = PointBlock::gather(&block.iter().map(|&index| points[index as usize]).collect::<Vec<_>>());
-        begin.evaluate_into(&carried.start, &mut carried.stages[0]);
+        let mut rk4 = Rk4Block::new(FieldBlock::ZERO);
+        rk4.start = PointBlock::gather(&block.iter().map(|&index| points[index as usize]).collect::<Vec<_>>());
+        begin.evaluate_into(&rk4.start, &mut rk4.stages[0]);
         let sleep: [usize; LANES] =
-            std::array::from_fn(|lane| self.resting_steps(carried.stages[0].clearance[lane], carried.start.get(lane)));
+            std::array::from_fn(|lane| self.resting_steps(rk4.stages[0].clearance[lane], rk4.start.get(lane)));
         if sleep[..block.len()].iter().all(|&steps| steps > 0) {
             block.iter().zip(sleep).for_each(|(&index, sleep)| wake[index as usize] = step + sleep);
             return block.len() as u64;
         }
         let fields = [begin, middle, middle, end];
         rk4_step(
-            std::slice::from_mut(&mut carried),
+            std::slice::from_mut(&mut rk4),
             self.step_time,
             |stage| &stage.velocity,
             |stage, points, out| fields[stage].evaluate_into(points, out),
         );
-        let Rk4Block { start, stages, end: arrived } = &carried;
+        let Rk4Block { start, stages, end: arrived } = &rk4;
         let is_still = |lane: usize| stages.iter().all(|stage| stage.clearance[lane] > 0.0);
         let core = |lane: usize| {
             let core = stages[0].core[lane];
@@ -242,7 +262,7 @@ impl Leg {
             if is_still(lane) {
                 wake[index as usize] = step + sleep[lane].max(1);
             } else if arrived.get(lane) == start.get(lane) {
-                // What is held, or carried by a body that pauses: not even the sign of a zero changes.
+                // The point is held by a mask, or its body pauses. Not even the sign of a zero may change.
             } else if core(lane) == NO_CORE {
                 *point = arrived.get(lane);
             } else {
@@ -253,18 +273,19 @@ impl Leg {
         4 * block.len() as u64
     }
 
-    /// Number of steps through which a point at rest, at least `clearance` away from the support, is certain to stay beyond it.
+    /// Number of steps through which a resting point, at least `clearance` from the support, certainly stays
+    /// beyond it.
     fn resting_steps(&self, clearance: f64, point: DVec3) -> usize {
         let slack = SLEEP_SLACK * (point.abs().max_element() + clearance);
         let steps = (clearance - slack) / (self.approach_speed * self.step_time);
-        // A field that stands still comes no closer: infinity means all remaining steps.
+        // A field at rest does not approach: infinity means all remaining steps.
         if steps >= 1.0 { (steps as usize).min(self.steps()) } else { 0 }
     }
 
     fn reach(&self) -> Aabb {
         let bounds =
             self.instants.iter().flat_map(|instant| instant.parts.iter().copied()).fold(Aabb::EMPTY, Aabb::union);
-        // Instants are half a step apart, so no time is more than a quarter from one.
+        // Instants are half a step apart, so each time is within a quarter of a step of one.
         bounds.expanded(0.25 * self.approach_speed * self.step_time)
     }
 
@@ -279,7 +300,7 @@ impl Leg {
                 clearance = block.clearance[0] - radius;
             }
             let sleep = self.resting_steps(clearance, center);
-            // Between this step and the next the support comes closer by less than a step's approach, or it may touch.
+            // If the point cannot sleep through one step, the support may touch it before the next test.
             if sleep == 0 {
                 return true;
             }

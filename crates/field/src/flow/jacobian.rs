@@ -1,10 +1,13 @@
-//! The Jacobian determinant of the flow map, which is one everywhere for the exact flow of a divergence-free field.
+//! The Jacobian determinant of the flow map. For the exact flow of a divergence-free field it is one.
 //!
-//! It is taken from central differences of the very map that carries the vertices, time step, rigid cores and sleeping
-//! included, rather than from the variational equation: that would ask every field for second derivatives of its distance, and
-//! tell of another discrete map than the one in use. At a distance h of [`DIFFERENCE`] times the length ℓ over which the field
-//! changes, the two agree up to h² times the third derivatives of the map, about 1e-8 times what the map stretches over ℓ, and
-//! to rounding, about 1e-16 |x|/h. Across a jump of the velocity no derivative exists, and the figure means nothing.
+//! The determinant comes from central differences of the discrete map that advects the vertices, with
+//! its time step, rigid cores and sleeping points. The variational equation would need second
+//! derivatives of every distance, and would describe another discrete map.
+//!
+//! Let ℓ be the length over which the field changes, and h = [`DIFFERENCE`] · ℓ. The truncation error
+//! is h² times the third derivatives of the map, about 1e-8 of the stretch over ℓ. The rounding error
+//! is about 1e-16 |x|/h. At a jump of the velocity the derivative does not exist, and the result is
+//! meaningless.
 
 use glam::{DMat3, DVec3};
 use isochore_mesh::{Aabb, Cancelled, Monitor};
@@ -12,32 +15,48 @@ use rayon::prelude::*;
 
 use super::{Stroke, advection::advect};
 
-/// Distance of the points whose difference is taken, as a share of the length over which the field changes. Larger: truncation
-/// shows. Smaller: rounding does.
+/// Half the distance between differenced points, as a fraction of the length over which the field
+/// changes. A larger value shows truncation; a smaller value shows rounding.
 const DIFFERENCE: f64 = 1e-4;
 
-/// Vertices that are asked whether a stroke may touch them, at most. More costs time; fewer misses small tools.
+/// Most vertices that are tested for a touch by the stroke. A larger value costs time; a smaller value
+/// misses small tools.
 const CANDIDATES: usize = 8192;
 
-/// Vertices at which the determinant is taken, at most, each at the cost of carrying six points.
+/// Most vertices at which the determinant is computed. Each costs the advection of six points. A larger
+/// value costs time; a smaller value misses the worst vertex.
 const SAMPLES: usize = 128;
 
-/// The least and the largest determinant found.
+/// The smallest and the largest Jacobian determinant of a flow map.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_field::{DeformOptions, JacobianRange, Stroke, Twist, deform};
+/// use isochore_mesh::{NoProgress, primitives};
+///
+/// let twist = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Z, 1.0)?);
+/// let options = DeformOptions { refine: None, lock: false };
+/// let receipt = deform(&primitives::icosphere(1.0, 2), &[twist], &options, &NoProgress)?.receipt;
+/// let JacobianRange { min, max } = receipt.strokes[0].jacobian.unwrap();
+/// assert!(min > 1.0 - 1e-6 && max < 1.0 + 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JacobianRange {
-    /// The least; zero or below where the map folds over.
+    /// The smallest determinant; zero or negative if the map folds.
     pub min: f64,
-    /// The largest.
+    /// The largest determinant.
     pub max: f64,
 }
 
 impl JacobianRange {
-    /// How far the worst is from one.
+    /// Largest deviation from one.
     pub(crate) fn deviation(&self) -> f64 {
         (1.0 - self.min).max(self.max - 1.0)
     }
 
-    /// The range of the flow map of `stroke` over some of those points that it moves; none where it moves none.
+    /// The range of the flow map of `stroke` over some of the points that it moves, or `None` if it moves
+    /// none.
     pub(crate) fn of(stroke: &Stroke, points: &[DVec3], monitor: &dyn Monitor) -> Result<Option<Self>, Cancelled> {
         let size = Aabb::of(points.iter().copied()).size().max_element();
         let candidates = evenly(points, CANDIDATES).collect::<Vec<_>>();
@@ -46,12 +65,12 @@ impl JacobianRange {
         let lengths: Vec<f64> =
             centers.iter().map(|&center| DIFFERENCE * stroke.feature_size_near(center, 0.0).min(size)).collect();
 
-        let mut carried: Vec<DVec3> = centers.clone();
+        let mut advected: Vec<DVec3> = centers.clone();
         for (&center, &length) in centers.iter().zip(&lengths) {
-            carried.extend(DVec3::AXES.iter().flat_map(|&axis| [center + length * axis, center - length * axis]));
+            advected.extend(DVec3::AXES.iter().flat_map(|&axis| [center + length * axis, center - length * axis]));
         }
-        advect(&mut carried, std::slice::from_ref(stroke), monitor)?;
-        let (images, sides) = carried.split_at(centers.len());
+        advect(&mut advected, std::slice::from_ref(stroke), monitor)?;
+        let (images, sides) = advected.split_at(centers.len());
         let moved = (0..centers.len()).filter(|&index| images[index] != centers[index]);
         let determinants = moved.map(|index| {
             let column =
@@ -65,7 +84,7 @@ impl JacobianRange {
     }
 }
 
-/// At most `count` of the points, evenly spread over their order.
+/// At most `count` of the points, evenly spaced in their order.
 fn evenly(points: &[DVec3], count: usize) -> impl Iterator<Item = DVec3> {
     points.iter().copied().step_by(points.len().div_ceil(count).max(1))
 }
@@ -93,21 +112,21 @@ mod tests {
     }
 
     #[test]
-    fn exact_flows_have_a_determinant_of_one() {
+    fn determinant_of_an_exact_flow_is_one() {
         let twist = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::new(1.0, 2.0, 0.5), 1.5).unwrap());
         // h = 2e-4 of the size, squared, times the third power of the rate, over six.
         assert!(range(&twist).deviation() < 1e-7, "{:?}", range(&twist));
     }
 
     #[test]
-    fn the_determinant_tends_to_one_with_order_four() {
+    fn determinant_converges_to_one_with_order_four() {
         let [coarse, fine] = [0.25, 0.125].map(|step| range(&press(step)).deviation());
-        // Half the step leaves a sixteenth; steps this long are a little off that, and 1e-6 is left by the differences.
+        // Half the step leaves a sixteenth in the limit of short steps. These steps leave a little more.
         assert!(coarse > 1e-4 && fine < coarse / 8.0, "{coarse:e} {fine:e}");
     }
 
     #[test]
-    fn nothing_moved_has_no_determinant() {
+    fn no_determinant_without_moved_points() {
         let points = [DVec3::splat(9.0)];
         assert_eq!(JacobianRange::of(&press(0.125), &points, &NoProgress), Ok(None));
         assert_eq!(JacobianRange::of(&press(0.125), &[], &NoProgress), Ok(None));

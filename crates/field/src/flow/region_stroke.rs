@@ -1,4 +1,4 @@
-//! The stroke of a region that moves.
+//! The stroke of a moving region.
 
 #[cfg(test)]
 mod tests;
@@ -11,22 +11,24 @@ use isochore_mesh::Aabb;
 use super::{AxisError, Move, MoveError};
 use crate::fields::{Pose, Region, rotation_from_vector, tool::gauge::Gauge};
 
-/// The longest turn between two keys, in radians: less than half a turn, beyond which the way would be another.
+/// Longest rotation between two keys, in radians. It must be less than half a turn, because a longer one
+/// would turn in the opposite direction.
 const LONGEST_TURN: f64 = TAU / 3.0;
 
-/// Keys of a rotation at most, which are as many turns of 120°. More is a mistake; a turn beyond is refused for its steps.
+/// Most parts of a rotation, of 120° each. A larger angle is a mistake; [`Move::new`] rejects it because of
+/// its steps.
 const MOST_PARTS: f64 = 1e5;
 
-/// How a region moves, in the world.
+/// The motion of a region, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RegionMotion {
-    /// By this vector.
+    /// Translation by this vector.
     Translation(DVec3),
-    /// About the line through `origin` along `axis`, of any length.
+    /// Rotation about the line through `origin` along `axis`.
     Rotation {
         /// A point of the axis.
         origin: DVec3,
-        /// Direction of the axis.
+        /// Direction of the axis, of any nonzero length.
         axis: DVec3,
         /// Radians, right-handed.
         angle: f64,
@@ -45,13 +47,32 @@ pub enum RegionMotionError {
 }
 
 impl Region {
-    /// The stroke in which the region moves.
+    /// The stroke of the moving region.
     ///
-    /// A half-space that turns is faster the farther one looks: then the time step is measured by the points of `reference`, a
-    /// box in the world that holds what is deformed. Elsewhere it plays no part.
+    /// `step` is as in [`Move::new`]. The speed of a rotating half-space has no bound. Its time step
+    /// depends on the speed in `reference`, a box in the world around the deformed mesh. Other regions
+    /// do not use `reference`.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    ///
+    /// use glam::DVec3;
+    /// use isochore_field::{Pose, Profile, Region, RegionMotion, Stroke};
+    /// use isochore_mesh::{Aabb, Sphere};
+    ///
+    /// let ball = Region::new(Arc::new(Sphere::new(0.5)?), Pose::IDENTITY, 0.5, Profile::Quintic)?;
+    /// let motion = RegionMotion::Translation(DVec3::X);
+    /// let stroke = Stroke::Move(ball.stroke(motion, 0.1, Aabb { min: DVec3::NEG_ONE, max: DVec3::ONE })?);
+    /// let mut points = [DVec3::ZERO, DVec3::Y * 1.1];
+    /// stroke.advect(&mut points);
+    /// // The inside moves rigidly, and the outside does not move.
+    /// assert_eq!(points, [DVec3::X, DVec3::Y * 1.1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
-    /// [`RegionMotionError`]: a zero axis, an origin or angle that is not finite, or an error of [`Move::new`].
+    /// [`RegionMotionError::Axis`] if the axis is zero or a number of the rotation is not finite, and
+    /// [`RegionMotionError::Move`] as for [`Move::new`].
     pub fn stroke(self, motion: RegionMotion, step: f64, reference: Aabb) -> Result<Move, RegionMotionError> {
         let Self { tool, placement } = self;
         let tool = if tool.distance().bounds().size().is_finite() {

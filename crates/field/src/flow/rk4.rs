@@ -1,20 +1,20 @@
-//! The classical Runge-Kutta method of order four, for a block of points.
+//! The classical Runge-Kutta method of order four, for blocks of points.
 
 use isochore_mesh::{LANES, PointBlock};
 use multiversion::multiversion;
 
-/// Points on their way through a step.
+/// A block of points during one step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rk4Block<S> {
     pub(crate) start: PointBlock,
-    /// What the field is at the four places where it is asked. The first is `start`, and must be filled in.
+    /// The field at the four stages. The caller fills the first, which is at `start`.
     pub(crate) stages: [S; 4],
-    /// Where the points are after the step.
+    /// Positions after the step.
     pub(crate) end: PointBlock,
 }
 
 impl<S: Copy> Rk4Block<S> {
-    /// At the origin, with this for the field.
+    /// Points at the origin, with `stage` for the field.
     pub(crate) fn new(stage: S) -> Self {
         Self { start: PointBlock::ZERO, stages: [stage; 4], end: PointBlock::ZERO }
     }
@@ -22,17 +22,18 @@ impl<S: Copy> Rk4Block<S> {
 
 /// Takes one step of length `time`.
 ///
-/// `velocity` is what counts here of a stage. `evaluate` gets the number of a stage, from 1 to 3, and places, and fills the stage in.
-/// The blocks go abreast, so that the processor has something to do while the results of one are on their way.
+/// `velocity` selects the velocity of a stage. `evaluate` receives the index of a stage, from 1 to 3, and
+/// positions, and fills the stage. All blocks take a stage before any takes the next, so the processor
+/// can work on one block while it waits for the results of another.
 pub(crate) fn rk4_step<S>(
     blocks: &mut [Rk4Block<S>],
     time: f64,
     velocity: impl Fn(&S) -> &PointBlock,
     evaluate: impl Fn(usize, &PointBlock, &mut S),
 ) {
-    for (stage, share) in [(1, 0.5 * time), (2, 0.5 * time), (3, time)] {
+    for (stage, stage_time) in [(1, 0.5 * time), (2, 0.5 * time), (3, time)] {
         for Rk4Block { start, stages, end } in &mut *blocks {
-            advance(start, velocity(&stages[stage - 1]), share, end);
+            advance(start, velocity(&stages[stage - 1]), stage_time, end);
             evaluate(stage, end, &mut stages[stage]);
         }
     }
@@ -41,7 +42,7 @@ pub(crate) fn rk4_step<S>(
     }
 }
 
-/// Where `points` are after moving straight on for `time`.
+/// The positions of `points` after a straight motion for `time`.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn advance(points: &PointBlock, velocity: &PointBlock, time: f64, end: &mut PointBlock) {
     for lane in 0..LANES {
@@ -51,14 +52,14 @@ fn advance(points: &PointBlock, velocity: &PointBlock, time: f64, end: &mut Poin
     }
 }
 
-/// The step's end from its four velocities.
+/// The end of the step from its four velocities.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn combine(points: &PointBlock, [k1, k2, k3, k4]: [&PointBlock; 4], time: f64, end: &mut PointBlock) {
-    let share = time / 6.0;
+    let weight = time / 6.0;
     for lane in 0..LANES {
-        end.x[lane] = points.x[lane] + share * (k1.x[lane] + 2.0 * (k2.x[lane] + k3.x[lane]) + k4.x[lane]);
-        end.y[lane] = points.y[lane] + share * (k1.y[lane] + 2.0 * (k2.y[lane] + k3.y[lane]) + k4.y[lane]);
-        end.z[lane] = points.z[lane] + share * (k1.z[lane] + 2.0 * (k2.z[lane] + k3.z[lane]) + k4.z[lane]);
+        end.x[lane] = points.x[lane] + weight * (k1.x[lane] + 2.0 * (k2.x[lane] + k3.x[lane]) + k4.x[lane]);
+        end.y[lane] = points.y[lane] + weight * (k1.y[lane] + 2.0 * (k2.y[lane] + k3.y[lane]) + k4.y[lane]);
+        end.z[lane] = points.z[lane] + weight * (k1.z[lane] + 2.0 * (k2.z[lane] + k3.z[lane]) + k4.z[lane]);
     }
 }
 
@@ -103,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn orders_are_one_two_and_four() {
+    fn methods_have_orders_one_two_and_four() {
         let cases: [(&str, [f64; 4], [f64; 4], f64); 3] = [
             ("Euler", errors(euler), [1.137e-1, 5.466e-2, 2.666e-2, 1.316e-2], 1.0),
             ("midpoint", errors(midpoint), [9.317e-3, 2.224e-3, 5.422e-4, 1.338e-4], 2.0),

@@ -1,4 +1,4 @@
-//! Strokes: the motions that deform, each the exact or integrated flow of a divergence-free field.
+//! Strokes: motions that deform, each the exact or integrated flow of a divergence-free field.
 
 mod reach;
 #[cfg(test)]
@@ -14,26 +14,26 @@ use super::{
 };
 use crate::fields::{Mask, RingError, StripError, swirl_field::SwirlField};
 
-/// One motion that deforms what it passes through.
+/// One motion that deforms the material that it passes.
 #[derive(Debug, Clone)]
 pub enum Stroke {
-    /// A tool moves rigidly from pose to pose.
+    /// A tool that moves rigidly from pose to pose.
     Move(Move),
-    /// Fields that change with time act one after the other.
+    /// A sequence of fields that change with time.
     Field(FieldStroke),
-    /// Planes across an axis turn about it, by an angle proportional to the distance along it.
+    /// A rotation of each plane across an axis, by an angle proportional to its height.
     Twist(Twist),
-    /// Spheres turn about an axis, by an angle proportional to the squared radius.
+    /// A rotation of each sphere about an axis, by an angle proportional to its squared radius.
     Bend(Bend),
-    /// A tool presses its shape into the surface.
+    /// A tool that presses its shape into a surface.
     Stamp(Stamp),
 }
 
 impl Stroke {
-    /// Carries `points` through the whole stroke and returns how many times the field was evaluated. A stamp is no flow and moves
-    /// no point by itself.
+    /// Advects `points` through the whole stroke and returns the number of evaluations of the field. A
+    /// stamp is not a flow and moves no points.
     ///
-    /// Each point's way depends on that point alone: the bits do not depend on its neighbors in the slice.
+    /// The path of a point depends on that point alone, so its bits do not depend on the other points.
     pub(crate) fn advect_chunk(&self, points: &mut [DVec3]) -> u64 {
         match self {
             Self::Move(stroke) => stroke.advect_chunk(points),
@@ -44,7 +44,8 @@ impl Stroke {
         }
     }
 
-    /// Whether the stroke may move a point of this ball; false is certain.
+    /// Whether the stroke may move a point of a ball. If it returns `false`, the stroke certainly moves
+    /// none.
     pub fn may_touch(&self, center: DVec3, radius: f64) -> bool {
         match self {
             Self::Move(stroke) => stroke.may_touch(center, radius),
@@ -54,7 +55,7 @@ impl Stroke {
         }
     }
 
-    /// Length over which the field changes in a ball where it has one: surface coarser than this can miss it there.
+    /// Length over which the field changes in a ball. A surface with longer edges can miss the field.
     pub(crate) fn feature_size_near(&self, center: DVec3, radius: f64) -> f64 {
         match self {
             Self::Move(stroke) => stroke.tool().feature_size(),
@@ -63,13 +64,35 @@ impl Stroke {
         }
     }
 
-    /// The stroke with the fields held back by `mask`; integrated in steps where it had an exact flow.
+    /// The stroke with its fields multiplied by `mask`. A masked twist or bend is integrated in steps.
     ///
-    /// `bounds` is the box of what is to be carried. `step` is the travel in one step for twists and bends; the other strokes
-    /// have their own.
+    /// `bounds` is the box of the points that will be advected. `step` bounds the travel in one step of
+    /// a twist or bend, as in [`FieldStroke::new`]; other strokes keep their step.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    ///
+    /// use glam::DVec3;
+    /// use isochore_field::{Mask, Pin, Stroke, Twist, advect_points};
+    /// use isochore_mesh::{Aabb, NoProgress};
+    ///
+    /// let twist = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Z, 1.0)?);
+    /// let pin = Pin::new(DVec3::new(1.0, 0.0, 1.0), 0.1, 0.3)?;
+    /// let mask = Arc::new(Mask::new(vec![pin], None, Vec::new())?);
+    /// let bounds = Aabb { min: DVec3::NEG_ONE, max: DVec3::ONE };
+    /// let masked = twist.masked(&mask, bounds, 0.1)?;
+    ///
+    /// let held = DVec3::new(1.0, 0.05, 1.0);
+    /// let images = advect_points(&[held, -held], &[masked], &NoProgress)?;
+    /// assert_eq!(images[0], held);
+    /// assert_ne!(images[1], -held);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
-    /// [`MaskedError`]: too many steps, a motion that its own mirror image undoes, or a stamp.
+    /// - [`MaskedError::UndoneByMirror`] if the mirror images of a twist or bend cancel it.
+    /// - [`MaskedError::Stamp`] for a stamp.
+    /// - [`MaskedError::Field`] if the masked field takes too many steps.
     pub fn masked(&self, mask: &Arc<Mask>, bounds: Aabb, step: f64) -> Result<Self, MaskedError> {
         if mask.is_empty() {
             return Ok(self.clone());
@@ -90,7 +113,7 @@ impl Stroke {
         Ok(Self::Field(fields.masked(mask, bounds)?))
     }
 
-    /// The stroke with half the time step; none where it takes no steps, or too many.
+    /// The stroke with half the time step, or `None` if it takes no steps or would take too many.
     pub(crate) fn with_half_step(&self) -> Option<Self> {
         match self {
             Self::Move(stroke) => stroke.with_half_step().ok().map(Self::Move),
@@ -99,7 +122,7 @@ impl Stroke {
         }
     }
 
-    /// The first part of the stroke, `fraction` of its time, from 0 to 1.
+    /// The first part of the stroke. `fraction` is a fraction of its time, clamped to 0 to 1.
     pub fn truncated(&self, fraction: f64) -> Self {
         let fraction = fraction.clamp(0.0, 1.0);
         match self {
@@ -117,7 +140,8 @@ impl Stroke {
 pub enum MaskedError {
     /// A twist or a bend whose mirror image turns in the opposite direction.
     #[error(
-        "the mirror image of the motion undoes it; only an axis across the plane goes with a bend, and none with a twist"
+        "the mirror image of the motion undoes it; a twist cannot be mirrored, \
+         and a bend only with its axis across the plane"
     )]
     UndoneByMirror,
     /// A stamp is not a flow, so a mask has nothing to scale.

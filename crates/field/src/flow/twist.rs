@@ -1,7 +1,8 @@
 //! The twist, by its exact flow.
 //!
-//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, equation 12.5 with unit rate. Every point keeps its
-//! height along the axis, so its angular velocity never changes and the flow is a rotation.
+//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, equation 12.5 with unit
+//! rate. A point keeps its height along the axis, so its angular velocity is constant and its path is
+//! a rotation.
 
 use glam::DVec3;
 use isochore_mesh::Aabb;
@@ -9,7 +10,21 @@ use isochore_mesh::Aabb;
 use super::axis::{Axis, AxisError};
 use crate::fields::swirl_field::{SwirlField, SwirlLaw};
 
-/// Planes across an axis turn about it, by an angle proportional to their height along it.
+/// A rotation of each plane across an axis, by an angle proportional to the height of the plane.
+///
+/// ```
+/// use std::f64::consts::FRAC_PI_2;
+///
+/// use glam::DVec3;
+/// use isochore_field::{Stroke, Twist};
+///
+/// let twist = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Z, FRAC_PI_2)?);
+/// let mut points = [DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.0, 0.0, 1.0)];
+/// twist.advect(&mut points);
+/// assert_eq!(points[0], DVec3::X);
+/// assert!(points[1].distance(DVec3::new(0.0, 1.0, 1.0)) < 1e-15);
+/// # Ok::<(), isochore_field::AxisError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Twist {
     axis: Axis,
@@ -17,11 +32,11 @@ pub struct Twist {
 }
 
 impl Twist {
-    /// The twist about the line through `origin` along `axis` (any length but zero): a point x turns, right-handed, by
-    /// `radians_per_unit` · a·(x − origin), a being the axis' direction.
+    /// The twist about the line through `origin` along `axis`, of any nonzero length. A point x turns,
+    /// right-handed, by `radians_per_unit` · a·(x − origin), where a is the unit vector along `axis`.
     ///
     /// # Errors
-    /// [`AxisError::Zero`], [`AxisError::NotFinite`].
+    /// [`AxisError::Zero`] if `axis` is zero, [`AxisError::NotFinite`] if an argument is not finite.
     pub fn new(origin: DVec3, axis: DVec3, radians_per_unit: f64) -> Result<Self, AxisError> {
         if !radians_per_unit.is_finite() {
             return Err(AxisError::NotFinite("the rate of the twist"));
@@ -37,7 +52,7 @@ impl Twist {
         points.len() as u64
     }
 
-    /// The field whose flow this is, for what lies in a box.
+    /// The field whose flow this is, for points in a box.
     pub(super) fn field(&self, bounds: Aabb) -> SwirlField {
         let Axis { origin, direction } = self.axis;
         SwirlField { origin, direction, law: SwirlLaw::Height, rate: self.radians_per_unit, bounds }
@@ -65,7 +80,8 @@ mod tests {
 
     #[test]
     fn golden_flow() {
-        // Equation 12.5 as printed turns at −4 L for half a unit of time; the second is a quarter turn per unit of length.
+        // Equation 12.5 as printed turns at −4 L per unit of time; the first value is after half a unit. The
+        // second is a quarter turn per unit of length.
         let raw = DVec3::new(0.090228213243689, -0.382773373565182, 0.587659266943338);
         let unit = DVec3::new(0.446962184598840, -0.373957009710995, 0.400475917411575);
         assert!(twisted(-2.0).distance(raw) < 1e-14);
@@ -80,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_axes_are_refused() {
+    fn rejects_invalid_axes() {
         assert_eq!(Twist::new(DVec3::ZERO, DVec3::ZERO, 1.0), Err(AxisError::Zero));
         assert_eq!(Twist::new(DVec3::ZERO, DVec3::NAN, 1.0), Err(AxisError::NotFinite("the axis")));
         assert!(Twist::new(DVec3::ZERO, DVec3::new(0.0, 1e-300, 0.0), 1.0).is_ok());

@@ -28,7 +28,7 @@ fn run(mesh: &TriMesh, stroke: Stroke, options: &DeformOptions) -> Deformed {
 }
 
 #[test]
-fn a_step_too_long_is_halved_and_said_so() {
+fn a_step_that_is_too_long_is_halved_with_a_note() {
     let sphere = primitives::icosphere(1.0, 4);
     let options = DeformOptions { refine: None, lock: false };
     let coarse = run(&sphere, press(1.0), &options);
@@ -36,17 +36,17 @@ fn a_step_too_long_is_halved_and_said_so() {
     assert!(step < 1.0, "{step}");
     assert!(matches!(coarse.receipt.notes[0], Note::StepHalved { stroke: 0, .. }), "{:?}", coarse.receipt.notes);
     assert!(coarse.receipt.strokes[0].jacobian.unwrap().deviation() <= JACOBIAN_TOLERANCE);
-    // The same as if that step had been asked for.
+    // The result equals that of the halved step.
     let fine = run(&sphere, press(step), &options);
     assert_eq!(fine.receipt.notes, coarse.receipt.notes[1..]);
     assert_eq!(fine.mesh, coarse.mesh);
-    // What is fine already is left alone.
+    // A fine step is not halved.
     assert_eq!(step_of(&run(&sphere, press(0.125), &options).strokes[0]), 0.125);
 }
 
 #[test]
-fn a_jump_of_the_velocity_is_not_chased() {
-    // A profile that acts inside a thin rod tears what lies there along the rod's axis, at any step.
+fn a_jump_of_the_velocity_does_not_halve_the_step() {
+    // A profile that acts inside a thin rod has a jump of the velocity on its axis, for any step.
     let tool = Tool::new(Arc::new(Capsule::new(0.02, 0.8).unwrap()), 0.3, Profile::Contact).unwrap();
     let at = DVec3::new(0.0, 0.9, 0.0);
     let turned = Pose { rotation: rotation_from_vector(DVec3::Y * FRAC_PI_2), translation: at };
@@ -56,7 +56,7 @@ fn a_jump_of_the_velocity_is_not_chased() {
 }
 
 #[test]
-fn the_volume_is_refined_to_what_was_asked() {
+fn refinement_reaches_the_volume_tolerance() {
     let sphere = primitives::icosphere(1.0, 4);
     for volume in [1e-3, 1e-4] {
         let refine = RefineOptions { volume, ..RefineOptions::default() };
@@ -66,7 +66,7 @@ fn the_volume_is_refined_to_what_was_asked() {
     }
 }
 
-/// A sheet so thin that a lock which takes back a coarse facet error crosses it.
+/// On a sheet so thin that the lock of a coarse mesh would cross it.
 #[test]
 fn the_lock_adds_no_crossings() {
     let sphere = primitives::icosphere(1.0, 4);
@@ -80,9 +80,13 @@ fn the_lock_adds_no_crossings() {
         pool.install(|| run(&sphere, stroke.clone(), &DeformOptions { refine: Some(refine), lock: true }))
     };
     let deformed = on(1);
-    let is_told = |note: &Note| matches!(note, Note::LockCrossings { .. });
+    let is_lock_crossing = |note: &Note| matches!(note, Note::LockCrossings { .. });
     let found = isochore_mesh::SelfIntersections::of(&deformed.mesh, &NoProgress).unwrap();
-    assert!(found.triangles().is_empty() || deformed.receipt.notes.iter().any(is_told), "{:?}", deformed.receipt);
+    assert!(
+        found.triangles().is_empty() || deformed.receipt.notes.iter().any(is_lock_crossing),
+        "{:?}",
+        deformed.receipt
+    );
     assert_eq!(deformed.mesh, on(2).mesh);
     assert_eq!(deformed.mesh, on(8).mesh);
 }

@@ -1,26 +1,26 @@
-//! Contact: where what the tool runs over comes to lie on its surface.
+//! Contact: the points of the tool's surface to which a step moves the vertices inside the tool.
 //!
-//! In coordinates of the tool at the end of a step, a vertex it has run over lies inside, and the same vertex carried along
-//! rigidly lies where it was before the step, outside. On the straight way between the two it stops where the distance
-//! first is zero.
+//! Take the coordinates of the tool at the end of a step. A vertex that the tool has run over is inside.
+//! If the vertex had moved rigidly with the tool, it would still be outside. On the segment between
+//! these two positions the vertex goes to the first point where the distance is zero.
 
 use glam::DVec3;
 use isochore_mesh::{Distance, DistanceBlock, LANES, PointBlock};
 use rayon::prelude::*;
 
-use super::Leg;
+use super::StepMotion;
 use crate::fields::{Tool, pose::Placement};
 
-/// The vertices within reach of a tool, with their distances from it.
+/// The vertices near a tool, with their distances from it.
 #[derive(Debug, Default)]
 pub(super) struct Near {
     /// In ascending order.
     pub(super) vertices: Vec<u32>,
-    /// Signed distances from the tool; infinite where it is not known.
+    /// Signed distances from the tool; infinite beyond the samples of a grid.
     pub(super) distances: Vec<f64>,
     /// Gradients of the distance, in world axes.
     pub(super) gradients: Vec<DVec3>,
-    /// Indices into `vertices` of those that the tool ran over and took along.
+    /// Indices into `vertices` of those that were inside the tool and moved to its surface.
     pub(super) dented: Vec<u32>,
     /// Evaluations of the distance.
     pub(super) evaluations: u64,
@@ -51,57 +51,61 @@ pub(super) fn sample(tool: &Tool, placement: &Placement, points: &[DVec3]) -> (V
     points.par_chunks(LANES).flat_map_iter(block).unzip()
 }
 
-/// How what lies in the tool got there.
+/// Why a vertex is inside the tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Cause {
-    /// The tool ran over it: it goes along with the tool.
+    /// The tool ran over it, so it moves with the tool.
     Motion,
-    /// It was raised into the tool, which has not moved since: it leaves by the shortest way.
+    /// The rim raised it into the tool, which has not moved since, so it takes the shortest path out.
     Raising,
 }
 
-/// Takes every vertex that lies in the tool at the end of the leg to where it lies on the tool's surface.
-pub(super) fn dent(positions: &mut [DVec3], leg: &Leg<'_>, cause: Cause) -> Near {
-    let mut near = Near::of(positions, leg.tool, &leg.end);
+/// Moves every vertex inside the tool at the end of the step to the surface of the tool.
+pub(super) fn dent(positions: &mut [DVec3], motion: &StepMotion<'_>, cause: Cause) -> Near {
+    let mut near = Near::of(positions, motion.tool, &motion.end);
     near.dented =
-        (0..near.vertices.len() as u32).filter(|&index| near.distances[index as usize] < -leg.rounding).collect();
+        (0..near.vertices.len() as u32).filter(|&index| near.distances[index as usize] < -motion.rounding).collect();
     let searches: Vec<Search> = near
         .dented
         .iter()
         .map(|&index| {
             let position = positions[near.vertices[index as usize] as usize];
-            let [from, to] = [&leg.end, &leg.start].map(|placement| placement.to_local(position));
+            let [from, to] = [&motion.end, &motion.start].map(|placement| placement.to_local(position));
             match cause {
                 Cause::Motion => Search::along(from, near.distances[index as usize], to),
                 Cause::Raising => Search::out_of(from),
             }
         })
         .collect();
-    let found: Vec<Search> =
-        searches.par_chunks(LANES).flat_map_iter(|block| search(leg.tool.distance(), block, leg.rounding)).collect();
+    let found: Vec<Search> = searches
+        .par_chunks(LANES)
+        .flat_map_iter(|block| search(motion.tool.distance(), block, motion.rounding))
+        .collect();
     for (&index, search) in near.dented.iter().zip(&found) {
         let index = index as usize;
-        positions[near.vertices[index] as usize] = leg.end.to_world(search.point());
+        positions[near.vertices[index] as usize] = motion.end.to_world(search.point());
         near.distances[index] = search.value;
-        near.gradients[index] = leg.end.turn_to_world(search.gradient);
+        near.gradients[index] = motion.end.turn_to_world(search.gradient);
         near.evaluations += search.evaluations;
     }
     near
 }
 
-/// The search for the first point of a way from inside the tool to outside where the distance is zero.
+/// A search for the first zero of the distance on a segment from inside the tool to outside.
+///
+/// Positions on the segment are fractions of its length.
 #[derive(Debug, Clone, Copy)]
 struct Search {
     from: DVec3,
     to: DVec3,
     stage: Stage,
-    /// Share of the way and distance there, last known inside.
+    /// Position and distance of the last known point inside.
     inside: (f64, f64),
-    /// The same, first known outside.
+    /// Position and distance of the first known point outside.
     outside: (f64, f64),
-    /// Share of the way that is looked at.
+    /// Position to evaluate next.
     at: f64,
-    /// Beside the way: set once the search has left it.
+    /// Point to evaluate next once the search has left the segment.
     aside: Option<DVec3>,
     value: f64,
     gradient: DVec3,
@@ -110,33 +114,34 @@ struct Search {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
-    /// Looks whether the end of the way is outside at all.
+    /// Checks whether the end of the segment is outside.
     End,
-    /// Goes along the way by steps that cannot jump over the surface.
+    /// Marches along the segment by steps that cannot pass the surface.
     March,
-    /// Knows a point inside and one outside.
+    /// Shrinks the bracket between a point inside and a point outside.
     Bracket,
-    /// Leaves the tool by the shortest way.
+    /// Takes Newton steps along the gradient, out of the tool.
     Leave,
     Done,
 }
 
-/// Shortest step of the march as a share of the way. Larger may jump over what sticks out of a side wall; smaller takes long
-/// where the way leads along the surface.
+/// Shortest step of the march, as a fraction of the segment. A larger value may pass over details of a
+/// side wall; a smaller value takes long if the segment runs along the surface.
 const SHORTEST_STEP: f64 = 1.0 / 32.0;
 
-/// Evaluations at most: the march takes 32, and bisecting every third time halves the bracket to rounding in 160. It only ends
-/// what a distance that is not continuous would keep going.
+/// Most evaluations. The march takes 32, and a bisection at every third evaluation shrinks the bracket to
+/// rounding in 160. The limit only ends a search in a discontinuous distance.
 const MAX_EVALUATIONS: u64 = 200;
 
-/// Newton steps at most on the shortest way out. They square the error where the surface is smooth.
+/// Most Newton steps on the shortest path out. Each squares the error if the surface is smooth.
 const MAX_NEWTON_STEPS: u64 = 20;
 
-/// Of what counts as zero, the share that a search aims at: rounding to world coordinates adds the rest.
+/// A search aims at this fraction of the distance that counts as zero. The conversion to world
+/// coordinates adds rounding, which needs the margin.
 const AIM: f64 = 1.0 / 16.0;
 
 impl Search {
-    /// The search for the first point of a way that is on the surface.
+    /// A search for the first point of a segment that is on the surface.
     fn along(from: DVec3, distance: f64, to: DVec3) -> Self {
         Self {
             from,
@@ -152,26 +157,27 @@ impl Search {
         }
     }
 
-    /// The search for a point of the surface near one inside.
+    /// A search for a point of the surface near a point inside.
     fn out_of(point: DVec3) -> Self {
         Self { stage: Stage::Leave, aside: Some(point), ..Self::along(point, f64::NEG_INFINITY, point) }
     }
 
-    /// The point that is looked at, in tool coordinates.
+    /// The point to evaluate next, in tool coordinates.
     fn point(&self) -> DVec3 {
-        let on_way = || if self.at == 1.0 { self.to } else { self.from + self.at * (self.to - self.from) };
-        self.aside.unwrap_or_else(on_way)
+        let on_segment = || if self.at == 1.0 { self.to } else { self.from + self.at * (self.to - self.from) };
+        self.aside.unwrap_or_else(on_segment)
     }
 
-    /// Takes in the distance at [`point`](Self::point) and says where to look next.
-    fn learn(&mut self, value: f64, gradient: DVec3, lipschitz: f64, rounding: f64) {
+    /// Processes the distance at [`point`](Self::point) and chooses the next point.
+    fn update(&mut self, value: f64, gradient: DVec3, lipschitz: f64, rounding: f64) {
         if self.stage == Stage::Done {
             return;
         }
         (self.value, self.gradient) = (value, gradient);
         self.evaluations += 1;
         match self.stage {
-            // What touches the tool stays on it; what is inside all the way, as the middle of a flat edge can be, leaves it.
+            // A vertex that touches the tool stays on it. The whole segment can be inside, as for the
+            // midpoint of a flat edge; such a vertex takes the shortest path out.
             Stage::End if value.abs() <= AIM * rounding => return self.stage = Stage::Done,
             Stage::End if value < 0.0 => self.stage = Stage::Leave,
             Stage::End => {
@@ -204,7 +210,7 @@ impl Search {
             let next = if is_good { secant } else { 0.5 * (low + high) };
             let is_narrow = !(next > low && next < high);
             if is_narrow || self.evaluations >= MAX_EVALUATIONS {
-                // Better a rounding outside than inside.
+                // The outer end of the bracket is off by rounding only, and not inside.
                 (self.at, self.value) = self.outside;
                 return self.stage = Stage::Done;
             } else {
@@ -222,7 +228,7 @@ impl Search {
     }
 }
 
-/// Carries out the searches of a block side by side.
+/// Runs the searches of a block together, one lane each.
 fn search(distance: &dyn Distance, block: &[Search], rounding: f64) -> Vec<Search> {
     let mut searches = block.to_vec();
     let mut out = DistanceBlock::FAR;
@@ -231,7 +237,7 @@ fn search(distance: &dyn Distance, block: &[Search], rounding: f64) -> Vec<Searc
         let points: Vec<DVec3> = searches.iter().map(Search::point).collect();
         distance.sample_into(&PointBlock::gather(&points), &mut out);
         for (lane, search) in searches.iter_mut().enumerate() {
-            search.learn(out.value[lane], out.gradient.get(lane), lipschitz, rounding);
+            search.update(out.value[lane], out.gradient.get(lane), lipschitz, rounding);
         }
     }
     searches

@@ -28,7 +28,7 @@ impl Coin {
         let (sin_x, cos_x) = libm::sincos(wave * point.x);
         let (sin_y, cos_y) = libm::sincos(wave * point.y);
         let slope = RELIEF * wave;
-        // As steep as the relief gets, the height above it is this much more than the distance.
+        // At the steepest slope of the relief, the height exceeds the distance by this factor.
         let scale = 1.0 / (1.0 + slope * slope).sqrt();
         let face = scale * (-RELIEF * cos_x * cos_y - point.z);
         let face_gradient = scale * DVec3::new(slope * sin_x * cos_y, slope * cos_x * sin_y, -1.0);
@@ -81,7 +81,7 @@ fn tool(distance: impl Distance + 'static) -> Arc<Tool> {
     Arc::new(Tool::new(Arc::new(distance), SUPPORT, Profile::Quintic).unwrap())
 }
 
-/// A slab whose upper face lies at [`TOP`].
+/// A slab whose upper face is at [`TOP`].
 fn slab(segments: usize) -> TriMesh {
     primitives::box_mesh(DVec3::new(1.2, 1.2, TOP), [segments, segments, segments / 20])
 }
@@ -95,7 +95,7 @@ fn coin(steps: usize) -> Stroke {
     let tool = tool(Coin);
     let step = (DEPTH + RELIEF) / tool.feature_size() / (steps as f64 - 0.5);
     let stamp = Stamp::new(tool, coin_keys(), step, Some(WAVELENGTH / 8.0)).unwrap();
-    assert_eq!(stamp.way().steps(), steps);
+    assert_eq!(stamp.path().steps(), steps);
     Stroke::Stamp(stamp)
 }
 
@@ -118,18 +118,18 @@ fn highest(mesh: &TriMesh) -> f64 {
     mesh.positions.iter().map(|position| position.z).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Vertices that the coin covers for sure, by their distance from it in the end.
+/// Final distances from the coin of the vertices that it certainly covers.
 fn covered(deformed: &Deformed) -> Vec<f64> {
     let distances = distances(&deformed.mesh, &Coin, &coin_keys()[1]);
     let is_covered = |rest: &DVec3| rest.z == TOP && rest.truncate().length() < 0.95 * RADIUS;
     deformed.rest.positions.iter().zip(distances).filter(|(rest, _)| is_covered(rest)).map(|(_, d)| d).collect()
 }
 
-/// Rounding of a distance near coordinates of one: what the press takes for contact.
+/// Rounding of a distance near coordinates of one, which the press treats as contact.
 const ROUNDING: f64 = 64.0 * f64::EPSILON * 2.0;
 
 #[test]
-fn the_volume_is_kept_and_the_tool_touches_without_cutting() {
+fn the_volume_is_kept_and_the_tool_does_not_cut() {
     for (mesh, options) in [(slab(80), FLAT), (slab(20), refined())] {
         let deformed = run(&mesh, &[coin(20)], &options);
         assert!(volume_error(&deformed) <= 1e-14, "{:.1e}", volume_error(&deformed));
@@ -144,17 +144,17 @@ fn the_volume_is_kept_and_the_tool_touches_without_cutting() {
 }
 
 #[test]
-fn the_rim_is_as_high_in_few_steps_as_in_many() {
+fn the_height_of_the_rim_does_not_depend_on_the_steps() {
     for (mesh, options) in [(slab(80), FLAT), (slab(20), refined())] {
         let [few, some, many] = [5, 20, 80].map(|steps| highest(&run(&mesh, &[coin(steps)], &options).mesh) - TOP);
         assert!(many > 0.08, "{many}");
-        // The step is of first order, and five steps are halved where they would raise too much at once.
+        // The steps are of first order, and some of the five are halved because they would raise too much.
         assert!((few / many - 1.0).abs() < 0.02 && (some / many - 1.0).abs() < 0.01, "{few} {some} {many}");
     }
 }
 
 #[test]
-fn the_relief_shows_between_vertices_too() {
+fn the_relief_appears_between_vertices() {
     let deformed = run(&slab(20), &[coin(20)], &refined());
     let placement = Placement::from(&coin_keys()[1]);
     let (mut seen, mut gap): (usize, f64) = (0, 0.0);
@@ -166,18 +166,19 @@ fn the_relief_shows_between_vertices_too() {
             seen += 1;
         }
     }
-    // Between points a length h apart, a wave of amplitude a leaves its chord by a h² k² / 8, in two directions at once.
+    // Over a chord of length h, a wave of amplitude a deviates by a h² k² / 8, in each of two directions.
     let wave = std::f64::consts::TAU / WAVELENGTH;
     let sagitta = 2.0 * RELIEF * (WAVELENGTH / 8.0 * wave).powi(2) / 8.0;
     assert!(seen > 1000 && gap < sagitta, "{seen} {gap} {sagitta}");
 }
 
 #[test]
-fn what_the_support_does_not_reach_keeps_its_bits() {
+fn points_beyond_the_support_keep_their_bits() {
     let deformed = run(&slab(20), &[coin(20)], &refined());
     let mut far = 0;
     for (rest, position) in deformed.rest.positions.iter().zip(&deformed.mesh.positions) {
-        // Middles of edges of which one end was raised go along, so what is raised ends within an edge, 0.17 at most.
+        // The midpoint of an edge moves with a raised end, so the raised part can extend by one edge, at
+        // most 0.17.
         if rest.truncate().length() > RADIUS + SUPPORT + 0.17 || rest.z < 0.0 {
             assert_eq!(rest.to_array().map(f64::to_bits), position.to_array().map(f64::to_bits));
             far += 1;
@@ -194,7 +195,7 @@ fn ball_press() -> Stroke {
 }
 
 #[test]
-fn flows_and_refinement_go_on_from_a_stamp() {
+fn flows_and_refinement_continue_after_a_stamp() {
     let mesh = slab(20);
     let twist = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Z, 0.6).unwrap());
     let strokes = [twist.clone(), coin(20), ball_press(), twist];
@@ -203,10 +204,11 @@ fn flows_and_refinement_go_on_from_a_stamp() {
     assert!(receipt.strokes.iter().all(|stroke| stroke.moved > 100));
     assert!(receipt.strokes[1].volume_change.unwrap().abs() < 1e-14);
     assert!(receipt.strokes[1].inserted > 0 && receipt.strokes[2].inserted > 0);
-    // Each run of flows holds its facet error below a share of 1e-4 by an asymptotic estimate; the time step leaves 1e-5.
+    // Each run of flows keeps its relative facet error below 1e-4, by an asymptotic estimate. The error
+    // of the time step is 1e-5.
     assert!(volume_error(&deformed) < 2.0 * 1e-4 + 2e-5, "{:.1e}", volume_error(&deformed));
 
-    // The rest is the mesh as given, split: the same triangles, each vertex where it came from.
+    // The rest is the input mesh, split: the same triangles, each vertex at its origin.
     assert_eq!(deformed.rest.triangles, deformed.mesh.triangles);
     assert_eq!(deformed.rest.positions[..mesh.positions.len()], mesh.positions);
     assert!((deformed.rest.volume() / mesh.volume() - 1.0).abs() < 1e-14);
@@ -216,8 +218,8 @@ fn flows_and_refinement_go_on_from_a_stamp() {
 }
 
 #[test]
-fn a_stamp_does_not_change_what_came_before_it() {
-    // Pressed far away from the ball: its dent has the bits that it has alone.
+fn a_stamp_does_not_change_the_strokes_before_it() {
+    // The stamp is far from the ball, so the dent of the ball has the same bits as without it.
     let away = vec![Pose::at(DVec3::new(-0.8, -0.8, 1.0)), Pose::at(DVec3::new(-0.8, -0.8, 0.62))];
     let small = Arc::new(Tool::new(Arc::new(Sphere::new(0.25).unwrap()), 0.1, Profile::Quintic).unwrap());
     let stamp = Stroke::Stamp(Stamp::new(small, away, 0.125, None).unwrap());
@@ -236,7 +238,7 @@ fn a_stamp_does_not_change_what_came_before_it() {
 }
 
 #[test]
-fn a_stamp_goes_on_where_one_ended() {
+fn a_stamp_continues_where_another_ended() {
     let deeper = vec![coin_keys()[1], Pose::at(DVec3::Z * (TOP - DEPTH - 0.05))];
     let again = Stroke::Stamp(Stamp::new(tool(Coin), deeper.clone(), 0.125, Some(WAVELENGTH / 8.0)).unwrap());
     let deformed = run(&slab(20), &[coin(20), again], &refined());
@@ -246,7 +248,7 @@ fn a_stamp_goes_on_where_one_ended() {
 }
 
 #[test]
-fn a_lifted_stamp_takes_nothing_along() {
+fn a_lifted_stamp_moves_nothing() {
     let mut keys = coin_keys();
     keys.push(keys[0]);
     let pressed = |keys| {
@@ -257,7 +259,7 @@ fn a_lifted_stamp_takes_nothing_along() {
 }
 
 #[test]
-fn a_stamp_may_turn_and_stand_anywhere() {
+fn a_stamp_works_in_any_pose() {
     let place = DVec3::new(300.0, -200.0, 100.0);
     let turn = rotation_from_vector(DVec3::new(0.4, -0.7, 0.2));
     let mesh = slab(20).transformed(1.0, turn, place);
@@ -270,23 +272,23 @@ fn a_stamp_may_turn_and_stand_anywhere() {
     let deformed = run(&mesh, &[stamp], &refined());
     assert!(volume_error(&deformed) <= 1e-14, "{:.1e}", volume_error(&deformed));
     let least = distances(&deformed.mesh, &Coin, &keys[1]).into_iter().fold(f64::INFINITY, f64::min);
-    // Coordinates near 300 round that much more.
+    // Coordinates near 300 have rounding errors that are as much larger.
     assert!(least >= -300.0 * ROUNDING, "{least:.1e}");
 }
 
 #[test]
-fn a_part_of_a_stamp_presses_part_of_the_way() {
+fn a_truncated_stamp_presses_part_of_the_path() {
     let half = coin(20).truncated(0.5);
     let deformed = run(&slab(20), &[half], &refined());
     let deepest = deformed.rest.positions.iter().zip(&deformed.mesh.positions).map(|(a, b)| a.z - b.z);
-    // Half of the way, less the height of the relief at which it began.
+    // Half of the path, less the height of the relief at its start.
     assert!((deepest.fold(0.0, f64::max) - (0.5 * (DEPTH + RELIEF))).abs() < 1e-3);
     assert!(volume_error(&deformed) <= 1e-14);
     assert_eq!(run(&slab(20), &[coin(20).truncated(0.0)], &refined()).receipt.notes, [Note::StampMissed { stroke: 0 }]);
 }
 
 #[test]
-fn the_lock_leaves_a_stamp_alone() {
+fn the_lock_does_not_change_a_stamp() {
     let [bare, locked] =
         [false, true].map(|lock| run(&slab(20), &[coin(20)], &DeformOptions { lock, ..refined() }).mesh);
     let farthest = bare.positions.iter().zip(&locked.positions).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
@@ -294,12 +296,12 @@ fn the_lock_leaves_a_stamp_alone() {
 }
 
 #[test]
-fn a_mesh_inside_out_is_stamped_as_any() {
+fn stamps_an_inverted_mesh() {
     let right = slab(20);
     let turned = right.clone().flipped();
     let [right, turned] = [right, turned].map(|mesh| run(&mesh, &[coin(20)], &refined()));
     assert!(volume_error(&turned) <= 1e-14);
-    // Diagonals may be chosen differently by rounding; heights agree to the sagitta of the rim.
+    // Rounding can choose other diagonals; heights agree up to the sagitta of the rim.
     assert!((highest(&right.mesh) - highest(&turned.mesh)).abs() < 1e-3);
 }
 
@@ -319,7 +321,7 @@ fn error(mesh: &TriMesh, stroke: Stroke) -> DeformError {
 }
 
 #[test]
-fn what_encloses_nothing_is_refused() {
+fn rejects_a_mesh_without_volume() {
     let mut open = slab(20);
     open.triangles.pop();
     let found = error(&open, coin(5));
@@ -330,15 +332,15 @@ fn what_encloses_nothing_is_refused() {
 }
 
 #[test]
-fn points_alone_are_refused() {
+fn rejects_points_without_a_surface() {
     let found = advect_points(&[DVec3::ZERO], &[ball_press(), coin(5)], &NoProgress).unwrap_err();
     assert_eq!(found, AdvectError::Stamp { stroke: 1 });
 }
 
 #[test]
-fn a_tool_that_starts_inside_is_refused() {
+fn rejects_a_tool_that_starts_inside() {
     let keys = vec![Pose::at(DVec3::Z * (TOP - 0.1)), Pose::at(DVec3::Z * (TOP - 0.2))];
-    // Even where no vertex of the mesh as given lies in the tool.
+    // Even if no vertex of the input mesh is inside the tool.
     for mesh in [slab(20), primitives::box_mesh(DVec3::new(1.2, 1.2, TOP), [1, 1, 1])] {
         let stamp = Stroke::Stamp(Stamp::new(tool(Coin), keys.clone(), 0.125, None).unwrap());
         let found = deform(&mesh, &[stamp], &refined(), &NoProgress).unwrap_err();
@@ -351,8 +353,8 @@ fn a_tool_that_starts_inside_is_refused() {
 }
 
 #[test]
-fn a_stamp_that_has_nowhere_to_raise_is_refused() {
-    // A press wider than the body, with hardly any reach beyond its edge.
+fn rejects_a_stamp_whose_volume_cannot_be_raised() {
+    // A tool wider than the body, with almost no support beyond its edge.
     let plate = isochore_mesh::RoundedBox::new(DVec3::new(3.0, 3.0, 0.2), 0.0).unwrap();
     let narrow = Arc::new(Tool::new(Arc::new(plate), 0.02, Profile::Quintic).unwrap());
     let keys = vec![Pose::at(DVec3::Z * 0.7), Pose::at(DVec3::Z * 0.4)];
@@ -362,7 +364,7 @@ fn a_stamp_that_has_nowhere_to_raise_is_refused() {
 }
 
 #[test]
-fn a_stamp_through_a_sheet_is_said_and_stays_finite() {
+fn a_stamp_through_a_sheet_is_noted_and_stays_finite() {
     let sheet = primitives::box_mesh(DVec3::new(1.2, 1.2, 0.05), [40, 40, 2]);
     let keys = vec![Pose::at(DVec3::Z * 0.1), Pose::at(DVec3::Z * -0.2)];
     let stamp = Stroke::Stamp(Stamp::new(tool(Coin), keys, 0.125, Some(0.05)).unwrap());
@@ -377,7 +379,7 @@ fn a_stamp_through_a_sheet_is_said_and_stays_finite() {
 }
 
 #[test]
-fn the_limit_on_triangles_holds_and_is_said() {
+fn the_limit_on_triangles_holds_and_is_noted() {
     let refine = RefineOptions { max_triangles: 3000, ..RefineOptions::default() };
     let deformed = run(&slab(20), &[coin(20)], &DeformOptions { refine: Some(refine), lock: false });
     assert!(deformed.mesh.triangles.len() <= 3000);

@@ -5,17 +5,26 @@ use rayon::prelude::*;
 
 use crate::deform::{curved_triangle::edge_lengths, tessellation::Tessellation};
 
-/// When to split.
+/// Criteria of refinement.
+///
+/// ```
+/// use isochore_field::RefineOptions;
+///
+/// let options = RefineOptions { max_edge: Some(0.05), max_triangles: 200_000, ..RefineOptions::default() };
+/// assert_eq!(options.volume, 1e-4);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RefineOptions {
-    /// Share of the mesh's volume at which the estimated facet error may stand. Open meshes have no volume and ignore it.
+    /// Largest estimated facet error, as a fraction of the volume of the mesh. Ignored for open meshes.
+    /// A larger value leaves more for the lock to correct; a smaller value splits more triangles.
     pub volume: f64,
-    /// Distance from an edge's image to the image of its midpoint that splits it, as a share of the longest side of the mesh's
-    /// bounding box.
+    /// Largest distance from the midpoint of an edge's image to the image of its midpoint, as a fraction
+    /// of the longest side of the bounding box of the mesh. A larger value leaves visible facets; a
+    /// smaller value splits more triangles.
     pub deviation: f64,
-    /// Length of an edge's image, in model units, that splits it; by default one and a half times the longest edge at rest.
+    /// Longest image of an edge, in model units. The default is 1.5 times the longest edge at rest.
     pub max_edge: Option<f64>,
-    /// No split goes beyond this number of triangles.
+    /// Largest number of triangles. Refinement stops before it exceeds this limit.
     pub max_triangles: usize,
 }
 
@@ -31,38 +40,39 @@ pub(crate) struct Criteria {
     volume: f64,
     pub(super) deviation: f64,
     pub(super) max_edge: f64,
-    /// Length in the base of edges that are not split any more.
+    /// Edges of at most this length in the base are not split.
     pub(super) shortest: f64,
     max_triangles: usize,
 }
 
-/// An edge of the base of this share of the deviation allowed, whose image still deviates, is torn by a jump of the velocity: on
-/// the medial axis of a concave tool, or of a thin one whose profile acts inside. Larger stops before strong but smooth
-/// stretching is followed; smaller spends ever more triangles along the tear.
+/// An edge that is shorter than this fraction of the allowed deviation and still deviates crosses a
+/// jump of the velocity: on the medial axis of a concave tool, or of a thin tool whose profile acts
+/// inside. A larger value stops before it has followed a strong, smooth stretch; a smaller value
+/// spends ever more triangles along the jump.
 const TORN: f64 = 0.25;
 
 impl Criteria {
-    /// The facet error at which refinement ends, cubic model units.
+    /// The allowed facet error, cubic model units.
     pub(crate) fn volume(&self) -> f64 {
         self.volume
     }
 
-    /// The same criteria with another facet error allowed.
+    /// The same criteria with another allowed facet error.
     pub(crate) fn with_volume(self, volume: f64) -> Self {
         Self { volume, ..self }
     }
 
-    /// The same criteria with no more than `max_triangles`.
+    /// The same criteria with at most `max_triangles`.
     pub(crate) fn with_max_triangles(self, max_triangles: usize) -> Self {
         Self { max_triangles: self.max_triangles.min(max_triangles), ..self }
     }
 
-    /// No split goes beyond this number of triangles.
+    /// The largest number of triangles.
     pub(crate) fn max_triangles(&self) -> usize {
         self.max_triangles
     }
 
-    /// The criteria for a mesh with the `image` it now has; `volume` is that of the closed mesh at rest, none of an open one.
+    /// The criteria for `mesh`. `volume` is its volume at rest, or `None` if it is open.
     pub(crate) fn new(options: &RefineOptions, mesh: &Tessellation, volume: Option<f64>) -> Self {
         let deviation = options.deviation * Aabb::of(mesh.rest.iter().copied()).size().max_element();
         let longest_of = |index: usize| edge_lengths(&mesh.image_of(index)).into_iter().fold(0.0, f64::max);

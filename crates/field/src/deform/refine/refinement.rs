@@ -11,31 +11,31 @@ use crate::{
     flow::Stroke,
 };
 
-/// A round divides what it splits by two, so this many divide any edge of a representable mesh down to rounding; it only ends
-/// what a defect would keep going.
+/// Most rounds of splitting. Each round halves the edges that it splits, so this many reach the rounding
+/// of any mesh. The limit only ends a loop that a defect would keep alive.
 pub(super) const MAX_ROUNDS: usize = 40;
 
-/// What the passes over one stroke have done.
+/// Result of rounds of splitting.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Refinement {
-    /// Vertices inserted.
+    /// Number of inserted vertices.
     pub(crate) inserted: usize,
     /// Evaluations of the fields.
     pub(crate) evaluations: u64,
-    /// Whether the limit on triangles ended it.
+    /// Whether the limit on triangles ended the rounds.
     pub(crate) is_limited: bool,
 }
 
 impl Refinement {
-    /// Adds up what was spent.
+    /// Adds the result of other rounds.
     pub(crate) fn add(&mut self, other: &Self) {
         self.inserted += other.inserted;
         self.evaluations += other.evaluations;
         self.is_limited |= other.is_limited;
     }
 
-    /// Splits the chosen edges, and the longest ones of the triangles at them, unless there is nothing to split or that would
-    /// pass the limit on triangles. Returns the triangles that it made.
+    /// Splits the chosen edges and the longest edges of the triangles at them. Returns the new
+    /// triangles, or `None` if nothing is chosen or the split would exceed the limit on triangles.
     pub(super) fn split(
         &mut self,
         mesh: &mut Tessellation,
@@ -58,15 +58,17 @@ impl Refinement {
     }
 }
 
-/// Wherever a triangle is split, has the longest edge of its image split too, and so on through the neighbors: a bisection at
-/// least, as M.-C. Rivara, *Algorithms for refining triangular grids suitable for adaptive and multigrid techniques*, 1984.
+/// Adds the longest edge of the image of each triangle that is split, and propagates to the neighbors.
 ///
-/// Without this a triangle can lose its two shorter edges again and again, its longest always just within the criteria, and
-/// shrink to a sliver along it, to no end. Where the image is so stretched that this happens in the base all the same, the
-/// longest edge there is split.
+/// Source: M.-C. Rivara, *Algorithms for refining triangular grids suitable for adaptive and
+/// multigrid techniques*, 1984 (longest-edge bisection).
+///
+/// Without this rule a triangle can split its two shorter edges again and again while the longest
+/// just meets the criteria, and become an ever thinner sliver. A stretched image can still make
+/// slivers in the base; those split their longest edge in the base.
 fn add_longest_edges(mesh: &mut Tessellation, chosen: &mut ChosenEdges) {
-    let mut place = 0;
-    while let Some(&first) = chosen.half_edges().get(place) {
+    let mut index = 0;
+    while let Some(&first) = chosen.half_edges().get(index) {
         let mut half_edge = first;
         loop {
             let triangle = half_edge as usize / 3;
@@ -82,6 +84,6 @@ fn add_longest_edges(mesh: &mut Tessellation, chosen: &mut ChosenEdges) {
                 break;
             }
         }
-        place += 1;
+        index += 1;
     }
 }

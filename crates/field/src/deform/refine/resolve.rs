@@ -1,4 +1,4 @@
-//! Refinement before a stroke: no field slips through between the vertices.
+//! Refinement before a stroke, so that the field does not pass between the vertices unnoticed.
 
 use isochore_mesh::{Aabb, Cancelled, Monitor};
 use rayon::prelude::*;
@@ -15,7 +15,8 @@ use crate::{
     flow::Stroke,
 };
 
-/// Splits triangles in the way of `stroke`, before it acts, until its field cannot slip through between their vertices.
+/// Splits the triangles that `stroke` may touch until their edges resolve its field. `past` are the
+/// strokes that lead from the base to the image.
 pub(crate) fn resolve_field(
     mesh: &mut Tessellation,
     past: &[Stroke],
@@ -35,15 +36,15 @@ pub(crate) fn resolve_field(
             let radius = corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max);
             let allowed = stroke.feature_size_near(center, radius);
             let is_long = edge_lengths(&corners).map(|length| length > allowed);
-            let is_met = is_long.contains(&true) && stroke.may_touch(center, radius);
-            std::array::from_fn(|side| (is_met && is_long[side]).then_some(3 * index + side as u32))
+            let is_touched = is_long.contains(&true) && stroke.may_touch(center, radius);
+            std::array::from_fn(|side| (is_touched && is_long[side]).then_some(3 * index + side as u32))
         };
         triangles.par_iter().flat_map_iter(long_edges).flatten_iter().collect()
     })
 }
 
-/// Splits `triangles` until none has an edge that `long_edges` finds too long. It is asked for them, then for those that each
-/// round has made, and answers with half-edges.
+/// Splits `triangles` until `long_edges` returns no half-edges. Each round after the first passes the
+/// triangles that the round before made.
 pub(crate) fn split_long_edges(
     mesh: &mut Tessellation,
     mut triangles: Vec<u32>,
@@ -58,7 +59,7 @@ pub(crate) fn split_long_edges(
         let mut chosen = ChosenEdges::default();
         long_edges(mesh, &triangles).into_iter().for_each(|half_edge| chosen.choose(mesh, half_edge));
         match refinement.split(mesh, strokes, chosen, criteria, monitor)? {
-            Some(made) => triangles = made,
+            Some(parts) => triangles = parts,
             None => break,
         }
     }

@@ -1,4 +1,4 @@
-//! Splits flat triangles that cross although the surface does not.
+//! Untangling: splits flat triangles that cross although the curved surface does not.
 
 use isochore_mesh::{Cancelled, Monitor};
 use rustc_hash::FxHashMap;
@@ -9,26 +9,30 @@ use crate::{
     flow::Stroke,
 };
 
-/// Rounds of splitting triangles that cross: each halves the edges there, so this many divide them by four thousand. It only
-/// ends what the other limits would keep going.
+/// Most rounds. Each halves the edges of crossing triangles, so this many divide them by four thousand.
+/// The limit only ends a loop that the other limits keep alive.
 const MAX_UNTANGLING_ROUNDS: usize = 12;
 
-/// Splitting triangles that cross may add this share of the triangles there are. Larger spends most of the mesh on sheets that
-/// a profile without a rigid core squeezes ever thinner; smaller gives up on long creases.
+/// Untangling may add this fraction of the existing triangles. A larger value spends most of the mesh on
+/// sheets that a profile without a rigid core makes ever thinner; a smaller value gives up on long
+/// creases.
 const UNTANGLING_GROWTH: f64 = 1.0;
 
-/// Triangles as long as this share of one that crosses, within the same triangle as read, are split with it. Larger lets folds
-/// wander along rows of slivers; smaller splits what is fine already.
+/// A triangle is split with a crossing one of the same input triangle if it is at least this fraction as
+/// long. A larger value lets folds move along rows of slivers; a smaller value splits triangles that
+/// are already fine.
 const AS_COARSE: f64 = 0.75;
 
-/// Splitting goes on while two rounds leave at most this share of the area that crosses. Nearer to one it chases the error of the
-/// time step; smaller gives up on sheets that take several rounds.
+/// The rounds go on while two of them reduce the crossing area to this fraction. A larger value tries to
+/// correct the error of the time step, which splits cannot; a smaller value gives up on sheets that
+/// take several rounds.
 const WORTHWHILE: f64 = 0.9;
 
-/// Splits triangles whose images cross although those in the base do not, as long as that helps.
+/// Splits triangles whose images cross although those in the base do not, while that reduces the
+/// crossing area.
 ///
-/// The exact image of a surface that does not cross itself does not either, so what crosses are flat triangles that cut
-/// through a neighboring sheet, or the error of the time step, which splitting does not mend.
+/// A flow map does not make a surface cross itself. New crossings are therefore flat triangles that
+/// cut through a neighboring sheet, or an error of the time step, which splits cannot correct.
 pub(crate) fn untangle(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
@@ -42,24 +46,25 @@ pub(crate) fn untangle(
         monitor.check("untangle", round as f64 / MAX_UNTANGLING_ROUNDS as f64)?;
         let crossing = mesh.new_crossings(&mesh.image, monitor)?;
         let area = mesh.image_area(&crossing);
-        // Compared over two rounds: the first split of a sliver may only turn its fold over.
+        // Compared over two rounds, because the first split of a sliver may only flip its fold.
         if crossing.is_empty() || area > WORTHWHILE * areas[0] {
             break;
         }
         areas = [areas[1], area];
-        // With all that is as coarse in the same triangles as read: at the end of a split row of slivers the next one folds.
+        // All triangles of similar length in the same input triangles are split too. Otherwise the
+        // sliver next to the split ones folds in the next round.
         let mut coarsest: FxHashMap<u32, f64> = FxHashMap::default();
         for &index in &crossing {
             let length = coarsest.entry(mesh.parent(index as usize)).or_insert(0.0);
             *length = length.max(mesh.longest_base_edge(index as usize));
         }
-        let is_wanted = |index: usize| {
+        let is_chosen = |index: usize| {
             let coarsest = coarsest.get(&mesh.parent(index));
             coarsest.is_some_and(|&length| mesh.longest_base_edge(index) > AS_COARSE * length)
         };
-        let wanted: Vec<usize> = (0..mesh.triangles.len()).filter(|&index| is_wanted(index)).collect();
+        let coarse: Vec<usize> = (0..mesh.triangles.len()).filter(|&index| is_chosen(index)).collect();
         let mut chosen = ChosenEdges::default();
-        for half_edge in wanted.into_iter().flat_map(|index| 3 * index as u32..3 * index as u32 + 3) {
+        for half_edge in coarse.into_iter().flat_map(|index| 3 * index as u32..3 * index as u32 + 3) {
             chosen.choose(mesh, half_edge);
         }
         let limit = criteria.with_max_triangles(most);

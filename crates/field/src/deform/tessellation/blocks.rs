@@ -1,4 +1,4 @@
-//! What is known of every few things of a long list, so that what touches few of them need not look at all.
+//! A cached summary of each block of a long list, so that a local change costs little.
 
 use std::ops::Range;
 
@@ -6,38 +6,38 @@ use rayon::prelude::*;
 
 use crate::flow::advection::CHUNK;
 
-/// What is known of each block of [`CHUNK`] things that follow one another.
+/// A cached value for each block of [`CHUNK`] consecutive elements.
 #[derive(Debug, Clone)]
 pub(super) struct Blocks<T> {
     known: Vec<Option<T>>,
 }
 
 impl<T: Copy + Send + Sync> Blocks<T> {
-    /// Nothing is known yet.
+    /// An empty cache.
     pub(super) const NONE: Self = Self { known: Vec::new() };
 
-    /// Nothing is known any more of the block of this thing.
-    pub(super) fn forget(&mut self, index: usize) {
+    /// Drops the value of the block that contains an element.
+    pub(super) fn invalidate(&mut self, index: usize) {
         if let Some(known) = self.known.get_mut(index / CHUNK) {
             *known = None;
         }
     }
 
-    /// Nothing is known any more.
-    pub(super) fn forget_all(&mut self) {
+    /// Drops all values.
+    pub(super) fn clear(&mut self) {
         self.known.clear();
     }
 
-    /// Gets to know all blocks of `count` things; `learn` is asked for what is not known.
-    pub(super) fn know(&mut self, count: usize, learn: impl Fn(Range<usize>) -> T + Sync) -> &Self {
+    /// Fills the cache for `count` elements. `compute` gives the missing values, by range of elements.
+    pub(super) fn fill(&mut self, count: usize, compute: impl Fn(Range<usize>) -> T + Sync) -> &Self {
         self.known.resize(count.div_ceil(CHUNK), None);
         self.known.par_iter_mut().enumerate().for_each(|(block, known)| {
-            known.get_or_insert_with(|| learn(block * CHUNK..count.min((block + 1) * CHUNK)));
+            known.get_or_insert_with(|| compute(block * CHUNK..count.min((block + 1) * CHUNK)));
         });
         self
     }
 
-    /// What is known, by block.
+    /// The cached values, by block.
     pub(super) fn iter(&self) -> impl Iterator<Item = T> {
         self.known.iter().copied().flatten()
     }
@@ -48,15 +48,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_was_forgotten_is_learned_again() {
+    fn recomputes_only_dropped_blocks() {
         let mut blocks = Blocks::NONE;
         let lengths = |blocks: &mut Blocks<usize>, count: usize, extra: usize| {
-            blocks.know(count, |range| range.len() + extra).iter().collect::<Vec<_>>()
+            blocks.fill(count, |range| range.len() + extra).iter().collect::<Vec<_>>()
         };
         assert_eq!(lengths(&mut blocks, CHUNK + 3, 0), [CHUNK, 3]);
-        blocks.forget(CHUNK + 2);
+        blocks.invalidate(CHUNK + 2);
         assert_eq!(lengths(&mut blocks, CHUNK + 4, 1), [CHUNK, 5]);
-        blocks.forget_all();
+        blocks.clear();
         assert_eq!(lengths(&mut blocks, 1, 1), [2]);
     }
 }

@@ -1,4 +1,4 @@
-//! Triangles whose images cross, looked for only where something has moved.
+//! Triangles whose images cross. Only the moved part of the surface is searched.
 
 use glam::DVec3;
 use isochore_mesh::{Aabb, Cancelled, Monitor, SelfIntersectionError, SelfIntersections, TriMesh};
@@ -7,16 +7,17 @@ use rustc_hash::FxHashSet;
 
 use super::Tessellation;
 
-/// No vertex.
+/// Marks a vertex that is not in the searched part.
 const NONE: u32 = u32::MAX;
 
 impl Tessellation {
-    /// Triangles that cross others where the vertices are at `image`, while in the base nothing crosses within the triangles of
-    /// the mesh as read that hold them; in ascending order.
+    /// Triangles that cross others at the positions `image` although the input triangles that contain
+    /// them do not cross in the base; in ascending order.
     pub(crate) fn new_crossings(&self, image: &[DVec3], monitor: &dyn Monitor) -> Result<Vec<u32>, Cancelled> {
         let box_of = |triangle: &[u32; 3]| Aabb::of(triangle.map(|vertex| image[vertex as usize]));
         let has_moved: Vec<bool> = image.iter().zip(&self.base).map(|(image, base)| image != base).collect();
-        // Of a pair that crosses anew one has moved, and the other reaches into the box of all that have.
+        // In a pair that newly crosses, one triangle has moved and the other overlaps the box of all
+        // moved triangles.
         let is_moved = |triangle: &[u32; 3]| triangle.iter().any(|&vertex| has_moved[vertex as usize]);
         let moved = self.triangles.par_iter().filter(|triangle| is_moved(triangle));
         let bounds = moved.map(box_of).reduce(|| Aabb::EMPTY, Aabb::union);
@@ -38,13 +39,13 @@ impl Tessellation {
         Ok(crossing)
     }
 
-    /// The triangles of the mesh as read that hold these two, the smaller first.
+    /// The input triangles that contain these two, in ascending order.
     fn parents(&self, pair: [u32; 2]) -> [u32; 2] {
         let [a, b] = pair.map(|triangle| self.parent(triangle as usize));
         [a.min(b), a.max(b)]
     }
 
-    /// Pairs of some of the triangles that cross where their vertices are at `positions`.
+    /// Pairs among `triangles` that cross at the given positions of the vertices.
     fn crossing_pairs(
         &self,
         positions: &[DVec3],
@@ -67,9 +68,9 @@ impl Tessellation {
             }));
         }
         match SelfIntersections::of(&part, monitor) {
-            Ok(found) => Ok(found.pairs().iter().map(|pair| pair.map(|place| triangles[place as usize])).collect()),
+            Ok(found) => Ok(found.pairs().iter().map(|pair| pair.map(|index| triangles[index as usize])).collect()),
             Err(SelfIntersectionError::Cancelled(cancelled)) => Err(cancelled),
-            // A mesh that cannot be searched is reported where it is checked; there is nothing to split here.
+            // The check of the input reports a mesh that cannot be searched. Nothing can be split then.
             Err(_) => Ok(Vec::new()),
         }
     }

@@ -1,8 +1,9 @@
-//! Which half-edges run along the same edge.
+//! The half-edges along each edge.
 
 use isochore_mesh::Topology;
 
-/// The half-edges along each edge, in a cycle: one at a boundary, two inside a manifold surface, more elsewhere.
+/// The half-edges along each edge, in a cycle: one at a boundary, two inside a manifold surface, more
+/// on a nonmanifold edge.
 ///
 /// Half-edge `3 t + k` runs from corner `k` to corner `k + 1` (modulo three) of triangle `t`.
 #[derive(Debug, Clone)]
@@ -22,7 +23,7 @@ impl EdgeCycles {
         Self { next }
     }
 
-    /// The half-edges along the edge of one of them, which comes first.
+    /// The half-edges along an edge, starting with the given one.
     pub(super) fn around(&self, half_edge: u32) -> impl Iterator<Item = u32> + '_ {
         let following = move |&current: &u32| Some(self.next(current)).filter(|&next| next != half_edge);
         std::iter::successors(Some(half_edge), following)
@@ -33,32 +34,32 @@ impl EdgeCycles {
         self.next[half_edge as usize]
     }
 
-    /// Makes room for the half-edges of `triangles` triangles, or gives it back. New ones are alone on their edges.
+    /// Changes the number of triangles. New half-edges are alone on their edges.
     pub(super) fn resize(&mut self, triangles: usize) {
         let known = self.next.len();
         self.next.resize(3 * triangles, 0);
         for half_edge in known..self.next.len() {
-            self.part(half_edge as u32);
+            self.isolate(half_edge as u32);
         }
     }
 
-    /// Lets a half-edge be alone on its edge, whatever cycle its number was in.
-    pub(super) fn part(&mut self, half_edge: u32) {
+    /// Makes a half-edge alone on its edge. Does not repair the cycle that contained it.
+    pub(super) fn isolate(&mut self, half_edge: u32) {
         self.next[half_edge as usize] = half_edge;
     }
 
-    /// Puts a half-edge that is alone beside another.
+    /// Adds a half-edge that is alone to the cycle of another.
     pub(super) fn join(&mut self, half_edge: u32, other: u32) {
         self.next[half_edge as usize] = std::mem::replace(&mut self.next[other as usize], half_edge);
     }
 
-    /// Puts half-edge `to`, which is alone, into the place of `from`, which is alone then.
+    /// Replaces half-edge `from` by `to`, which is alone. `from` is alone afterwards.
     pub(super) fn replace(&mut self, from: u32, to: u32) {
         let before = self.around(from).last().unwrap_or(from);
         if before != from {
             self.next[to as usize] = self.next[from as usize];
             self.next[before as usize] = to;
-            self.part(from);
+            self.isolate(from);
         }
     }
 }
@@ -68,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cycles_are_joined_and_replaced() {
+    fn joins_and_replaces_half_edges() {
         // Three triangles on the edge 0–1.
         let mut cycles = EdgeCycles::new(&Topology::of_triangles(&[[0, 1, 2], [1, 0, 3], [0, 1, 4]], 5));
         assert_eq!(cycles.around(3).collect::<Vec<_>>(), [3, 6, 0]);

@@ -4,12 +4,12 @@ use isochore_mesh::{Cancelled, Monitor};
 use rayon::prelude::*;
 
 use super::{Tessellation, sum};
-use crate::{deform::curved_triangle::SHARE_SEEN, flow::Stroke};
+use crate::{deform::curved_triangle::GAIN_FRACTION, flow::Stroke};
 
 /// An estimate of the facet error.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FacetError {
-    /// Estimated signed volume between the flat triangles and the curved image: the volume that the flat triangles lack.
+    /// Estimated signed volume that the flat triangles lack relative to the curved image.
     pub(crate) volume: f64,
     /// Triangles whose part of the estimate is new, in ascending order.
     pub(crate) changed: Vec<u32>,
@@ -18,7 +18,7 @@ pub(crate) struct FacetError {
 }
 
 impl Tessellation {
-    /// Estimates the facet error of the image under the `strokes` since the base, the last of which has just acted. Follows the
+    /// Estimates the facet error of the image. `strokes` lead from the base to the image. Follows the
     /// midpoints of the edges that have moved.
     pub(crate) fn estimate_facet_error(
         &mut self,
@@ -32,15 +32,15 @@ impl Tessellation {
             }
         }
         let evaluations = self.advect_followed(strokes, monitor)?;
-        // With the neighbors across the edges that are newly followed.
+        // A newly followed edge also changes the neighbor across it.
         self.put_back(&changed);
         let changed = self.take_changed();
         self.update_gains(&changed);
         Ok(FacetError { volume: self.facet_error(), changed, evaluations })
     }
 
-    /// Triangles whose images, or those of the midpoints at them, have changed since this was last asked, and new ones; in
-    /// ascending order.
+    /// Takes the list of triangles that are new, or whose corners or midpoints have moved, since the
+    /// last call; in ascending order.
     fn take_changed(&mut self) -> Vec<u32> {
         let mut changed = std::mem::take(&mut self.changed);
         changed.par_sort_unstable();
@@ -48,22 +48,22 @@ impl Tessellation {
         changed
     }
 
-    /// Has triangles be told again as changed.
+    /// Marks triangles as changed, so that the next estimate includes them.
     pub(crate) fn put_back(&mut self, changed: &[u32]) {
         self.changed.extend_from_slice(changed);
     }
 
-    /// Learns the volume between some triangles and their curved images.
+    /// Recomputes the gains of some triangles.
     fn update_gains(&mut self, triangles: &[u32]) {
         let gain = |&index: &u32| self.curved(index as usize).map_or(0.0, |curved| curved.volume_gain());
         let gains: Vec<f64> = triangles.par_iter().map(gain).collect();
         for (&index, gain) in triangles.iter().zip(gains) {
             self.gains[index as usize] = gain;
-            self.gain_sums.forget(index as usize);
+            self.gain_sums.invalidate(index as usize);
         }
     }
 
-    /// By triangle, the volume gained by splitting it once at the images of its midpoints.
+    /// The volume gained by one split of each triangle at the images of its midpoints.
     pub(crate) fn gains(&self) -> &[f64] {
         &self.gains
     }
@@ -71,7 +71,7 @@ impl Tessellation {
     /// Estimated signed volume between the flat triangles and the curved image.
     fn facet_error(&mut self) -> f64 {
         let gains = &self.gains;
-        let sums = self.gain_sums.know(gains.len(), |triangles| sum(gains[triangles].iter().copied()));
-        sum(sums.iter()) / SHARE_SEEN
+        let sums = self.gain_sums.fill(gains.len(), |triangles| sum(gains[triangles].iter().copied()));
+        sum(sums.iter()) / GAIN_FRACTION
     }
 }

@@ -9,26 +9,26 @@ use crate::{
     flow::{Stroke, advection::advect},
 };
 
-/// The edge's midpoint is not followed.
+/// The midpoint of the edge is not followed.
 pub(super) const UNFOLLOWED: u32 = u32::MAX;
 
 /// Midpoints of edges of the base, and their images.
 #[derive(Debug, Clone)]
 pub(super) struct Midpoints {
-    /// By half-edge; all along an edge agree.
+    /// Index of the midpoint for each half-edge, or [`UNFOLLOWED`]; equal along an edge.
     pub(super) of_half_edge: Vec<u32>,
     pub(super) base: Vec<DVec3>,
     pub(super) image: Vec<DVec3>,
-    /// Boxes around the images of each block of them.
+    /// Boxes around blocks of images.
     pub(super) bounds: Blocks<Aabb>,
-    /// Half-edges at those whose image is not known yet.
+    /// One half-edge at each midpoint that has no image yet.
     pending: Vec<u32>,
-    /// Numbers that can be given again.
+    /// Indices that can be reused.
     pub(super) unused: Vec<u32>,
 }
 
 impl Midpoints {
-    /// None is followed at these half-edges.
+    /// No midpoints; `of_half_edge` holds [`UNFOLLOWED`] for each half-edge.
     pub(super) fn none(of_half_edge: Vec<u32>) -> Self {
         Self {
             of_half_edge,
@@ -42,8 +42,8 @@ impl Midpoints {
 }
 
 impl Tessellation {
-    /// From now on follows the midpoint of the edge of a half-edge, and returns its number. Its image is not known until the
-    /// next [`advect_followed`](Self::advect_followed).
+    /// Starts to follow the midpoint of an edge and returns its index. Its image is set by the next
+    /// [`advect_followed`](Self::advect_followed).
     pub(super) fn follow(&mut self, half_edge: u32) -> u32 {
         let known = self.midpoints.of_half_edge[half_edge as usize];
         if known != UNFOLLOWED {
@@ -56,7 +56,7 @@ impl Tessellation {
             midpoints.image.push(DVec3::ZERO);
             midpoints.base.len() as u32 - 1
         });
-        midpoints.bounds.forget(number as usize);
+        midpoints.bounds.invalidate(number as usize);
         midpoints.base[number as usize] = middle;
         midpoints.image[number as usize] = middle;
         midpoints.pending.push(half_edge);
@@ -64,13 +64,13 @@ impl Tessellation {
         number
     }
 
-    /// From now on follows the midpoints of a triangle's edges.
+    /// Starts to follow the midpoints of the edges of a triangle.
     pub(crate) fn follow_edges_of(&mut self, triangle: u32) {
         (0..3).for_each(|side| _ = self.follow(3 * triangle + side));
     }
 
-    /// Carries the midpoints that are newly followed through the `strokes` since the base, which has changed the triangles at
-    /// those that move. Returns the evaluations of the fields.
+    /// Advects the newly followed midpoints through the `strokes` since the base, and records the
+    /// triangles at those that move as changed. Returns the evaluations of the fields.
     pub(crate) fn advect_followed(&mut self, strokes: &[Stroke], monitor: &dyn Monitor) -> Result<u64, Cancelled> {
         let midpoints = &mut self.midpoints;
         let pending = std::mem::take(&mut midpoints.pending);
@@ -89,7 +89,7 @@ impl Tessellation {
         Ok(evaluations)
     }
 
-    /// The triangle's image with its midpoints, if all are followed.
+    /// The image of a triangle with its midpoints, or `None` unless all are followed.
     pub(crate) fn curved(&self, triangle: usize) -> Option<CurvedTriangle> {
         let midpoints = self.midpoints_of(triangle);
         let image = |midpoint: u32| self.midpoints.image[midpoint as usize];
@@ -97,7 +97,7 @@ impl Tessellation {
             .then(|| CurvedTriangle { corners: self.image_of(triangle), midpoints: midpoints.map(image) })
     }
 
-    /// The midpoints of a triangle's edges 01, 12 and 20.
+    /// The midpoints of the edges 01, 12 and 20 of a triangle.
     pub(super) fn midpoints_of(&self, triangle: usize) -> [u32; 3] {
         std::array::from_fn(|side| self.midpoints.of_half_edge[3 * triangle + side])
     }

@@ -7,39 +7,39 @@ use isochore_mesh::{Aabb, VolumeFrame};
 use super::{Tessellation, blocks::Blocks, midpoints::UNFOLLOWED, sum};
 use crate::flow::advection::CHUNK;
 
-/// Images of a block of triangles.
+/// Bounds and volume of the images of a block of triangles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
-    /// Box around the corners and the midpoints that are followed.
+    /// Box around the corners and the followed midpoints.
     bounds: Aabb,
     /// Six times the volume between them and the center of the frame.
     six_volumes: f64,
 }
 
 impl Tessellation {
-    /// The triangles in blocks whose images, or those of their midpoints, reach into a box; in ascending order.
+    /// The triangles of all blocks whose bounds overlap a box, in ascending order.
     pub(crate) fn triangles_in(&mut self, bounds: Aabb) -> Vec<u32> {
         let count = self.triangles.len();
-        let blocks = self.know_shapes().enumerate().filter(|(_, shape)| shape.bounds.overlaps(bounds));
+        let blocks = self.update_shapes().enumerate().filter(|(_, shape)| shape.bounds.overlaps(bounds));
         let triangles = |block: usize| (block * CHUNK) as u32..count.min((block + 1) * CHUNK) as u32;
         blocks.flat_map(|(block, _)| triangles(block)).collect()
     }
 
     /// Signed volume inside the images of the triangles.
     pub(crate) fn image_volume(&mut self) -> f64 {
-        let bounds = self.know_shapes().fold(Aabb::EMPTY, |bounds, shape| bounds.union(shape.bounds));
-        // Far from where it was the sum would lose digits.
+        let bounds = self.update_shapes().fold(Aabb::EMPTY, |bounds, shape| bounds.union(shape.bounds));
+        // A center far from the image would lose digits of the sum to cancellation.
         if !self.frame.is_centered_in(bounds) {
             self.frame = VolumeFrame::of(&self.image);
-            self.shapes.forget_all();
+            self.shapes.clear();
         }
-        let six_volumes = sum(self.know_shapes().map(|shape| shape.six_volumes));
+        let six_volumes = sum(self.update_shapes().map(|shape| shape.six_volumes));
         self.frame.volume(six_volumes)
     }
 
-    fn know_shapes(&mut self) -> impl Iterator<Item = Shape> {
+    fn update_shapes(&mut self) -> impl Iterator<Item = Shape> {
         let mut shapes = std::mem::replace(&mut self.shapes, Blocks::NONE);
-        let learn = |triangles: Range<usize>| {
+        let compute = |triangles: Range<usize>| {
             let midpoints = triangles.clone().flat_map(|index| self.midpoints_of(index));
             let midpoints = midpoints.filter(|&midpoint| midpoint != UNFOLLOWED);
             let midpoints = midpoints.map(|midpoint| self.midpoints.image[midpoint as usize]);
@@ -49,7 +49,7 @@ impl Tessellation {
                 six_volumes: sum(triangles.map(|index| self.frame.six_volumes(self.image_of(index)))),
             }
         };
-        shapes.know(self.triangles.len(), learn);
+        shapes.fill(self.triangles.len(), compute);
         self.shapes = shapes;
         self.shapes.iter()
     }

@@ -1,4 +1,4 @@
-//! Splitting: a triangle's parts take its place.
+//! Splitting: the parts of a triangle replace it.
 
 use glam::DVec3;
 use isochore_mesh::{TriangleSide, TriangleSplit};
@@ -10,7 +10,7 @@ use super::{ChosenEdges, Part, Tessellation, WHOLE, middle, midpoints::UNFOLLOWE
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     vertex: u32,
-    /// Barycentric coordinates in the triangle of the mesh as read.
+    /// Barycentric coordinates in the input triangle.
     weights: DVec3,
     image: DVec3,
 }
@@ -18,9 +18,9 @@ struct Corner {
 /// A side of a triangle that is being split.
 #[derive(Debug, Clone, Copy)]
 enum Side {
-    /// One that it had, by its half-edge.
+    /// An unsplit side of the triangle, by its half-edge.
     Whole(u32),
-    /// A half of one, or one inside.
+    /// A half of a split side, or a side inside the triangle.
     New,
 }
 
@@ -39,8 +39,8 @@ impl TriangleSide for Side {
 }
 
 impl Tessellation {
-    /// Splits the chosen edges, and every triangle at them: into two, three or four by the number of its chosen edges, so that
-    /// both sides of an edge agree. Returns the triangles that are there now in place of those, in ascending order.
+    /// Splits the chosen edges and the triangles at them, each into one part more than it has chosen
+    /// edges, so that both sides of an edge agree. Returns the indices of the parts in ascending order.
     pub(crate) fn split(&mut self, chosen: &ChosenEdges) -> Vec<u32> {
         let known = self.rest.len() as u32;
         let mut split = Vec::with_capacity(2 * chosen.half_edges().len());
@@ -50,25 +50,26 @@ impl Tessellation {
             self.base.push(self.midpoints.base[midpoint as usize]);
             self.image.push(self.midpoints.image[midpoint as usize]);
             self.midpoints.unused.push(midpoint);
-            self.vertex_bounds.forget(self.rest.len() - 1);
+            self.vertex_bounds.invalidate(self.rest.len() - 1);
             split.extend(self.edges.around(half_edge).map(|half_edge| half_edge / 3));
         }
         split.sort_unstable();
         split.dedup();
         let first_new = self.triangles.len() as u32;
-        // By its ends, a half-edge on every edge that is made.
-        let mut made = FxHashMap::default();
+        // One half-edge on each new edge, by the vertices of the edge.
+        let mut new_edges = FxHashMap::default();
         for &triangle in &split {
-            let inserted = self.midpoints_of(triangle as usize).map(|midpoint| Some(known + chosen.place(midpoint)?));
-            self.split_triangle(triangle, inserted, &mut made);
+            let inserted =
+                self.midpoints_of(triangle as usize).map(|midpoint| Some(known + chosen.index_of(midpoint)?));
+            self.split_triangle(triangle, inserted, &mut new_edges);
         }
         split.extend(first_new..self.triangles.len() as u32);
         self.report_changed(&split);
         split
     }
 
-    /// Puts the parts of a triangle, whose edges 01, 12 and 20 have got the vertices `inserted`, in its place.
-    fn split_triangle(&mut self, triangle: u32, inserted: [Option<u32>; 3], made: &mut FxHashMap<[u32; 2], u32>) {
+    /// Replaces a triangle by its parts. `inserted` holds the new vertices on the edges 01, 12 and 20.
+    fn split_triangle(&mut self, triangle: u32, inserted: [Option<u32>; 3], new_edges: &mut FxHashMap<[u32; 2], u32>) {
         let Part { parent, corners: weights } = self.part(triangle as usize);
         let vertices = self.triangles[triangle as usize];
         let corner = |vertex: u32, weights| Corner { vertex, weights, image: self.image[vertex as usize] };
@@ -85,7 +86,8 @@ impl Tessellation {
             split.parts(distance_squared, |_, _| Some(Side::New), |corners, sides| parts.push((corners, sides)));
         debug_assert!(is_done.is_some(), "every inner side was given");
 
-        // The first part takes the triangle's number, so the old half-edges make room: they go behind all others meanwhile.
+        // The first part takes the index of the triangle, so the old half-edges move behind all others
+        // until each is replaced by its successor.
         let midpoints = whole.map(|half_edge| self.midpoints.of_half_edge[half_edge as usize]);
         let count = self.triangles.len() + parts.len() - 1;
         self.edges.resize(count + 1);
@@ -93,7 +95,7 @@ impl Tessellation {
         for half_edge in whole {
             match inserted[half_edge as usize % 3] {
                 None => self.edges.replace(half_edge, aside(half_edge)),
-                Some(_) => self.edges.part(half_edge),
+                Some(_) => self.edges.isolate(half_edge),
             }
         }
         for (index, (corners, sides)) in parts.into_iter().enumerate() {
@@ -109,7 +111,7 @@ impl Tessellation {
                     Side::New => {
                         self.midpoints.of_half_edge[half_edge as usize] = UNFOLLOWED;
                         let [a, b] = self.ends(half_edge);
-                        let other = *made.entry([a.min(b), a.max(b)]).or_insert(half_edge);
+                        let other = *new_edges.entry([a.min(b), a.max(b)]).or_insert(half_edge);
                         if other != half_edge {
                             self.edges.join(half_edge, other);
                         }
@@ -120,7 +122,7 @@ impl Tessellation {
         self.edges.resize(count);
     }
 
-    /// A new triangle, which has nothing yet but its half-edges; returns its number.
+    /// Adds an empty triangle and returns its index.
     fn push_triangle(&mut self) -> u32 {
         self.triangles.push([0; 3]);
         self.part_of.push(WHOLE);

@@ -17,7 +17,7 @@ use crate::{
     },
 };
 
-/// The same field with its velocity multiplied by the mask, as it should not be.
+/// A field whose velocity is multiplied by the mask, which is wrong.
 #[derive(Debug)]
 struct MaskedVelocity(Arc<dyn MovingField>, Arc<Mask>);
 
@@ -55,14 +55,14 @@ impl Field for MaskedVelocityInstant {
 }
 
 #[test]
-fn masking_the_velocity_breaks_the_volume_and_masking_the_potential_does_not() {
+fn masking_the_potential_keeps_the_volume_and_masking_the_velocity_does_not() {
     let mask = pinned(vec![pin([0.35, 0.0, 0.85], 0.1, 0.4)]);
     let press = ball([0.0, 0.0, 1.7], [0.0, 0.0, 1.0], 0.05);
     let Stroke::Move(motion) = &press else { unreachable!() };
     let wrong: Vec<Arc<dyn MovingField>> =
         motion.fields().into_iter().map(|field| Arc::new(MaskedVelocity(field, mask.clone())) as _).collect();
     let flux = |field: &dyn Field| {
-        // About the pin, where the mask changes.
+        // Around the pin, where the mask changes.
         let shifted = Shifted(field, DVec3::new(0.35, 0.0, 0.85));
         worst_field_flux(&shifted, |_| f64::INFINITY, 0.3)
     };
@@ -78,12 +78,12 @@ fn masking_the_velocity_breaks_the_volume_and_masking_the_potential_does_not() {
         assert!(receipt.max_displacement > 0.2);
         receipt.volume_before_lock.unwrap() / receipt.volume_before.unwrap() - 1.0
     });
-    // Twice the estimate that ends refinement, and what the time step leaves.
+    // Twice the estimate that ends refinement, and the error of the time step.
     assert!(right.abs() < 3e-5, "{right:e}");
     assert!(wrong.abs() > 1e-3, "{wrong:e}");
 }
 
-/// A field seen from another origin.
+/// A field relative to another origin.
 #[derive(Debug)]
 struct Shifted<'a>(&'a dyn Field, DVec3);
 
@@ -100,7 +100,7 @@ impl Field for Shifted<'_> {
 }
 
 #[test]
-fn held_vertices_keep_their_bits_and_the_volume_stays() {
+fn held_vertices_keep_their_bits_and_the_volume_is_kept() {
     let sphere = primitives::icosphere(1.0, 4);
     let weights: Vec<f64> = sphere.positions.iter().map(|position| if position.x > 0.1 { 1.0 } else { 0.0 }).collect();
     let vertices = VertexMask::new(&sphere, &weights, Some(0.5)).unwrap();
@@ -127,7 +127,7 @@ fn held_vertices_keep_their_bits_and_the_volume_stays() {
 }
 
 #[test]
-fn a_pin_smaller_than_the_triangles_is_not_missed() {
+fn refinement_finds_a_pin_smaller_than_the_triangles() {
     let cube = primitives::box_mesh(DVec3::ONE, [1, 1, 1]);
     let mask = pinned(vec![pin([0.3, -0.1, 1.0], 0.05, 0.2)]);
     let twist = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Z, 0.25 * FRAC_PI_2).unwrap());

@@ -20,7 +20,7 @@ fn pose(turn: [f64; 3], translation: [f64; 3]) -> Pose {
     Pose { rotation: rotation_from_vector(turn.into()), translation: translation.into() }
 }
 
-/// A rod that screws its way through three poses, and the same as fields in the world.
+/// A rod that moves along two screws, and the same motion as fields in the world.
 fn rod(step: f64) -> (Move, FieldStroke) {
     let tool = Tool::new(Arc::new(Capsule::new(0.15, 0.6).unwrap()), 0.25, Profile::Quintic).unwrap();
     let keys = vec![
@@ -49,7 +49,8 @@ fn world_and_tool_coordinates_converge_to_the_same_flow() {
         largest_distance(&a, &b)
     };
     let [coarse, fine] = [0.1, 0.05].map(difference);
-    // Both are of order four: half the step leaves a sixteenth; a quintic's third derivatives jump, which costs some of it.
+    // Both are of order four, so half the step leaves a sixteenth of the error. The third derivatives of
+    // a quintic jump, which costs a part of that.
     assert!(fine < coarse / 9.0 && fine < 1e-5, "{coarse:e} {fine:e}");
 }
 
@@ -60,12 +61,12 @@ fn the_core_moves_rigidly() {
     let mut expected = points;
     fields.advect_chunk(&mut points);
     motion.advect_chunk(&mut expected);
-    // Both carry a core point by closed forms, so only the roundings of some dozens of steps differ.
+    // Both move a core point in closed form, so only the rounding of some dozens of steps differs.
     assert!(points[0].distance(expected[0]) < 1e-14, "{points:?} {expected:?}");
 }
 
 #[test]
-fn sleeping_changes_no_bit() {
+fn sleep_changes_no_bits() {
     let (_, fields) = rod(0.1);
     let mut restless = fields.clone();
     restless.legs.iter_mut().for_each(|leg| leg.approach_speed = f64::INFINITY);
@@ -80,7 +81,7 @@ fn sleeping_changes_no_bit() {
 }
 
 #[test]
-fn what_may_not_be_touched_is_not_moved() {
+fn untouchable_points_do_not_move() {
     let (_, fields) = rod(0.1);
     let points = scattered_points(500, 1.2);
     let mut moved = points.clone();
@@ -96,14 +97,14 @@ fn what_may_not_be_touched_is_not_moved() {
 }
 
 #[test]
-fn a_part_of_the_way_is_the_way_so_far() {
+fn a_truncated_stroke_is_the_start_of_the_stroke() {
     let (motion, fields) = rod(0.02);
     let points = scattered_points(100, 1.0);
     for fraction in [0.0, 0.3, 0.5, 0.8] {
         let (mut a, mut b) = (points.clone(), points.clone());
         motion.truncated(fraction).advect_chunk(&mut a);
         fields.truncated(fraction).advect_chunk(&mut b);
-        // Both are off the exact flow by less than 1e-6 at this step.
+        // Both differ from the exact flow by less than 1e-6 at this step.
         assert!(largest_distance(&a, &b) < 1e-6, "{fraction}");
     }
 }
@@ -119,7 +120,7 @@ fn a_moving_tool_is_a_divergence_free_field() {
 }
 
 #[test]
-fn strokes_without_a_way_are_refused() {
+fn rejects_invalid_strokes() {
     assert_eq!(FieldStroke::new(Vec::new(), 0.1).unwrap_err(), FieldStrokeError::NoField);
     let tool = Tool::new(Arc::new(Sphere::new(0.1).unwrap()), 0.1, Profile::Quintic).unwrap();
     let motion = Move::new(Arc::new(tool), vec![Pose::IDENTITY, Pose::at(DVec3::X)], 1.0).unwrap();
@@ -183,7 +184,7 @@ impl Field for PulseInstant {
 }
 
 #[test]
-fn sleeping_is_sound_where_the_support_changes_with_time() {
+fn sleep_is_valid_if_the_support_changes_with_time() {
     let fields = FieldStroke::new(vec![Arc::new(Pulse)], 0.02).unwrap();
     let mut restless = fields.clone();
     restless.legs.iter_mut().for_each(|leg| leg.approach_speed = f64::INFINITY);
@@ -197,7 +198,7 @@ fn sleeping_is_sound_where_the_support_changes_with_time() {
     assert!(untouchable.clone().count() > 500);
     assert!(untouchable.into_iter().all(|(point, moved)| point == moved));
     assert!(slept.iter().zip(&points).filter(|(a, b)| a != b).count() > 100);
-    // A tenth of the true speed lets points sleep while the support passes: the test can tell.
+    // With a tenth of the true speed, points sleep while the support passes, so the test can fail.
     let mut careless = fields.clone();
     careless.legs.iter_mut().for_each(|leg| leg.approach_speed *= 0.1);
     let mut missed = points.clone();

@@ -1,29 +1,29 @@
-//! Points that a segment of a way may carry, and what each of them does.
+//! The points that a segment may advect, and the state of each.
 
 use glam::DVec3;
 use isochore_mesh::{Aabb, LANES};
 
 use crate::fields::pose::Placement;
 
-/// Points on their way through a segment.
+/// Points during a segment, in world and tool coordinates.
 pub(super) struct AdvectedPoints<'a> {
     pub(super) world: &'a mut [DVec3],
     pub(super) local: Vec<DVec3>,
     pub(super) state: Vec<State>,
-    /// First step at which a resting point must be looked at again.
+    /// First step at which a resting point must be tested again.
     pub(super) wake: Vec<usize>,
-    /// Whether one that moved, or was about to, no longer does.
+    /// Whether a point that was due for a step has stopped moving in tool coordinates or in the world.
     pub(super) have_stopped: bool,
 }
 
-/// What a traveler does.
+/// State of an advected point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
-    /// It stands still in the world.
+    /// At rest in the world.
     Resting,
-    /// It moves in tool coordinates.
+    /// Moving in tool coordinates.
     Moving,
-    /// It stands still in tool coordinates until the end of the segment.
+    /// At rest in tool coordinates until the end of the segment.
     Carried,
 }
 
@@ -39,7 +39,7 @@ impl<'a> AdvectedPoints<'a> {
         }
     }
 
-    /// Those in whose neighborhood, a ball by center and radius, something may happen.
+    /// Indices of the points that may move. `may_touch` tests a ball, by center and radius.
     pub(super) fn near(&mut self, may_touch: impl Fn(DVec3, f64) -> bool) -> Vec<u32> {
         self.wake.fill(0);
         let may_touch_all = |points: &[DVec3]| {
@@ -55,7 +55,7 @@ impl<'a> AdvectedPoints<'a> {
         near
     }
 
-    /// Lets a point rest where it is at the beginning of the step with this placement.
+    /// Puts a point to rest in the world. `placement` is that of the tool at the start of the step.
     pub(super) fn rest(&mut self, index: usize, placement: &Placement, wake: usize) {
         if self.state[index] != State::Resting {
             self.world[index] = placement.to_world(self.local[index]);
@@ -65,14 +65,14 @@ impl<'a> AdvectedPoints<'a> {
         self.have_stopped = true;
     }
 
-    /// Lets a point stand still in tool coordinates.
+    /// Puts a point to rest in tool coordinates.
     pub(super) fn carry(&mut self, index: usize) {
         self.state[index] = State::Carried;
         self.have_stopped = true;
     }
 
-    /// Lets all rest that come with the tool, whose way ends with this placement.
-    pub(super) fn arrive(&mut self, placement: &Placement) {
+    /// Puts all points to rest at the end of the segment. `placement` is that of the tool at the end.
+    pub(super) fn finish(&mut self, placement: &Placement) {
         for index in 0..self.world.len() {
             self.rest(index, placement, 0);
         }

@@ -3,7 +3,11 @@ use isochore_mesh::{
 };
 
 use super::*;
-use crate::fields::{Profile, rotation_from_vector};
+use super::{advected_points::State, segment::BATCH};
+use crate::{
+    fields::{BodyTwist, Profile, RigidField, VelocityBlock, rotation_from_vector},
+    flow::rk4::Rk4Block,
+};
 
 fn tool(distance: impl Distance + 'static, support: f64, profile: Profile) -> Arc<Tool> {
     Arc::new(Tool::new(Arc::new(distance), support, profile).unwrap())
@@ -13,25 +17,25 @@ fn sphere(profile: Profile) -> Arc<Tool> {
     tool(Sphere::new(0.4).unwrap(), 0.3, profile)
 }
 
-fn carried(stroke: &Move, point: DVec3) -> DVec3 {
+fn advected(stroke: &Move, point: DVec3) -> DVec3 {
     let mut points = [point];
     stroke.advect_chunk(&mut points);
     points[0]
 }
 
-/// The way of the golden press: the center comes down from (0, 0, 1.8) by one.
+/// The golden press: the center moves down from (0, 0, 1.8) by one.
 fn press(profile: Profile, step: f64) -> Move {
     Move::new(sphere(profile), vec![Pose::at(DVec3::Z * 1.8), Pose::at(DVec3::Z * 0.8)], step).unwrap()
 }
 
 const STARTS: [[f64; 3]; 5] = [[0.0, 0.0, 1.0], [0.1, 0.0, 1.0], [0.3, 0.2, 0.9], [0.6, 0.0, 0.75], [0.0, 0.55, 0.7]];
 
-/// `steps` per unit of way; the golden values are what many small steps tend to.
+/// `steps` per unit of length; the golden values are the limit of many small steps.
 fn check_press(profile: Profile, steps: usize, tolerance: f64, golden: [[f64; 3]; 5]) {
     let stroke = press(profile, 1.0 / (steps as f64 * 0.3));
     assert!((stroke.steps() as i64 - steps as i64).abs() <= 1);
     for (start, golden) in STARTS.into_iter().zip(golden) {
-        let error = carried(&stroke, start.into()).distance(golden.into());
+        let error = advected(&stroke, start.into()).distance(golden.into());
         assert!(error < tolerance, "{profile} from {start:?}: {error:.1e}");
     }
 }
@@ -84,7 +88,8 @@ fn golden_press_of_the_true_von_funck_profile() {
     );
 }
 
-/// The slope of this profile jumps on the surface, which costs the integrator its order: 20,000 steps for eight digits.
+/// The slope of this profile jumps on the surface, which reduces the order of the integrator: eight
+/// digits take 20,000 steps.
 #[test]
 fn golden_press_quad() {
     check_press(
@@ -101,8 +106,8 @@ fn golden_press_quad() {
     );
 }
 
-/// A rod whose velocity and angular velocity are constant in the world, which no constant body twist gives: integrated here in
-/// the world from the field of each instant.
+/// A rod whose velocity and angular velocity are constant in the world. No constant body twist has this
+/// motion, so the test integrates the field of each instant in the world.
 #[test]
 fn golden_rod() {
     let rod = tool(Capsule::new(0.15, 0.8).unwrap(), 0.25, Profile::Septic);
@@ -147,7 +152,7 @@ fn the_core_moves_rigidly() {
         let rod = tool(Capsule::new(0.15, 0.8).unwrap(), 0.25, profile);
         let stroke = Move::new(rod, keys.clone(), 0.125).unwrap();
         for local in [DVec3::new(0.0, 0.05, 0.2), DVec3::new(0.1, 0.0, -0.8), DVec3::new(0.03, 0.04, 0.93)] {
-            let arrived = carried(&stroke, keys[0].transform(local));
+            let arrived = advected(&stroke, keys[0].transform(local));
             assert!(arrived.distance(keys[1].transform(local)) < 1e-12, "{profile} at {local}");
         }
     }
@@ -155,10 +160,11 @@ fn the_core_moves_rigidly() {
 
 #[test]
 fn runge_kutta_converges_with_order_four() {
-    let reference = carried(&press(Profile::Septic, 1.0 / 512.0), DVec3::new(0.6, 0.0, 0.75));
-    let error = |step: f64| carried(&press(Profile::Septic, step), DVec3::new(0.6, 0.0, 0.75)).distance(reference);
+    let reference = advected(&press(Profile::Septic, 1.0 / 512.0), DVec3::new(0.6, 0.0, 0.75));
+    let error = |step: f64| advected(&press(Profile::Septic, step), DVec3::new(0.6, 0.0, 0.75)).distance(reference);
     let order = libm::log2(error(1.0 / 16.0) / error(1.0 / 32.0));
-    // The asymptotic range begins near R/16; the reference is 16 times finer than the finest step, so off by 1e-5 of its error.
+    // The asymptotic range begins near R/16. The reference has a 16 times finer step than the finest, so
+    // its error is 1e-5 of that one.
     assert!((3.7..4.5).contains(&order), "{order}");
 }
 
@@ -171,22 +177,23 @@ fn press_and_lift_return() {
         let height = 1.0 - 2.0 * (t + 0.5) / 400.0;
         let ring = (1.0 - height * height).sqrt();
         let point = DVec3::new(ring * libm::cos(2.4 * t), ring * libm::sin(2.4 * t), height);
-        assert!(carried(&stroke, point).distance(point) < 1e-4 * 0.3, "{point}");
+        assert!(advected(&stroke, point).distance(point) < 1e-4 * 0.3, "{point}");
     }
 }
 
 #[test]
-fn sleeping_changes_no_bit() {
+fn sleep_changes_no_bits() {
     let half_extents = DVec3::new(0.5, 0.1, 0.2);
-    sleeping_changes_no_bit_around(tool(RoundedBox::new(half_extents, 0.05).unwrap(), 0.2, Profile::Quintic));
+    check_sleep_around(tool(RoundedBox::new(half_extents, 0.05).unwrap(), 0.2, Profile::Quintic));
     let mesh = primitives::box_mesh(half_extents, [1, 1, 1]);
     let options = DistanceFieldOptions { resolution: 32, padding: Padding::Reach(0.2), ..Default::default() };
     let sampled = DistanceField::new(&mesh, &options, &NoProgress).unwrap();
-    sleeping_changes_no_bit_around(tool(sampled, 0.2, Profile::Quintic));
+    check_sleep_around(tool(sampled, 0.2, Profile::Quintic));
 }
 
-/// Points all around a tool that turns and travels, carried with sleeping and by looking at every point at every step.
-fn sleeping_changes_no_bit_around(bar: Arc<Tool>) {
+/// Points around a tool that turns and travels, advected with sleep, and with a test of every point at
+/// every step.
+fn check_sleep_around(bar: Arc<Tool>) {
     let keys = vec![
         Pose { rotation: rotation_from_vector(DVec3::new(0.3, 0.0, 0.0)), translation: DVec3::new(-1.0, 0.2, 0.0) },
         Pose { rotation: rotation_from_vector(DVec3::new(0.3, 1.5, 0.9)), translation: DVec3::new(0.6, 0.0, 0.3) },
@@ -205,17 +212,17 @@ fn sleeping_changes_no_bit_around(bar: Arc<Tool>) {
     for segment in &stroke.segments {
         let field = RigidField::new(&stroke.tool, segment.twist);
         let mut advected = AdvectedPoints::new(&mut wakeful);
-        let mut blocks = [Rk4Block::new(VelocityBlock::REST); ABREAST];
+        let mut blocks = [Rk4Block::new(VelocityBlock::REST); BATCH];
         for step in 0..segment.steps() {
             for index in 0..advected.world.len() {
                 if advected.state[index] == State::Resting {
                     advected.local[index] = segment.placements[step].to_local(advected.world[index]);
                 }
-                // Through the same step, but never asked whether it may sleep.
+                // The same step, without sleep.
                 segment.step_blocks(&field, step, &[index as u32], &mut advected, &mut blocks);
             }
         }
-        advected.arrive(&segment.placements[segment.steps()]);
+        advected.finish(&segment.placements[segment.steps()]);
     }
     assert_eq!(sleeping, wakeful);
     let moved = points.iter().zip(&sleeping).filter(|(a, b)| a != b).count();
@@ -227,12 +234,12 @@ fn sleeping_changes_no_bit_around(bar: Arc<Tool>) {
 fn the_head_on_gap_is_the_closed_form() {
     // Straight ahead of a sphere the quadratic profile gives u/(2−u) = u₀/(2−u₀) exp(−2D/R).
     let stroke = Move::new(sphere(Profile::Quad), vec![Pose::IDENTITY, Pose::at(DVec3::Z * 0.9)], 1e-3).unwrap();
-    let gap = carried(&stroke, DVec3::Z * 0.7).z - 0.9 - 0.4;
+    let gap = advected(&stroke, DVec3::Z * 0.7).z - 0.9 - 0.4;
     assert!((gap / 0.3 - 0.004945246).abs() < 1e-8, "{}", gap / 0.3);
 }
 
 #[test]
-fn a_ball_out_of_reach_is_not_touched_and_one_in_the_way_is() {
+fn touches_a_ball_on_the_path_only() {
     let stroke = press(Profile::Quintic, 0.125);
     assert!(!stroke.may_touch(DVec3::new(0.0, 0.0, -1.0), 0.5));
     assert!(!stroke.may_touch(DVec3::new(2.0, 0.0, 1.2), 1.0));
@@ -241,11 +248,11 @@ fn a_ball_out_of_reach_is_not_touched_and_one_in_the_way_is() {
 }
 
 #[test]
-fn a_part_of_a_stroke_ends_on_its_way() {
+fn a_truncated_stroke_ends_on_its_path() {
     let stroke = press(Profile::Quintic, 0.125);
     let inside = DVec3::new(0.1, 0.0, 1.7);
-    assert!(carried(&stroke.truncated(0.5), inside).distance(inside - DVec3::Z * 0.5) < 1e-14);
-    assert_eq!(carried(&stroke.truncated(0.0), inside), inside);
+    assert!(advected(&stroke.truncated(0.5), inside).distance(inside - DVec3::Z * 0.5) < 1e-14);
+    assert_eq!(advected(&stroke.truncated(0.0), inside), inside);
 }
 
 #[test]
@@ -254,12 +261,12 @@ fn a_pause_moves_nothing() {
         Pose { rotation: rotation_from_vector(DVec3::new(0.3, 0.7, -0.2)), translation: DVec3::new(0.1, 0.2, 0.3) };
     let stroke = Move::new(sphere(Profile::Quintic), vec![pose, pose], 0.125).unwrap();
     for point in [DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.7, 0.3, 0.2), DVec3::new(3.0, 0.0, 0.0)] {
-        assert_eq!(carried(&stroke, point), point);
+        assert_eq!(advected(&stroke, point), point);
     }
 }
 
 #[test]
-fn bad_paths_are_refused() {
+fn rejects_invalid_paths() {
     let turn = Pose { rotation: rotation_from_vector(DVec3::Z * std::f64::consts::PI), translation: DVec3::ZERO };
     let error = |keys: Vec<Pose>, step: f64| Move::new(sphere(Profile::Quintic), keys, step).unwrap_err();
     assert_eq!(error(vec![Pose::IDENTITY], 0.125), MoveError::TooFewKeys(1));
@@ -273,7 +280,7 @@ fn bad_paths_are_refused() {
 }
 
 #[test]
-fn nothing_moves_beyond_the_reach_and_carrying_has_the_bits_of_the_flow() {
+fn nothing_moves_beyond_the_reach_and_advection_in_place_has_the_same_bits() {
     let tool = tool(RoundedBox::new(DVec3::new(0.4, 0.2, 0.1), 0.05).unwrap(), 0.3, Profile::Quintic);
     let turned =
         Pose { rotation: rotation_from_vector(DVec3::new(0.3, 1.9, 0.4)), translation: DVec3::new(0.9, 0.2, 0.1) };
@@ -283,26 +290,26 @@ fn nothing_moves_beyond_the_reach_and_carrying_has_the_bits_of_the_flow() {
     let grid =
         (0..24_usize.pow(3)).map(|i| DVec3::new((i % 24) as f64, (i / 24 % 24) as f64, (i / 576) as f64) * 0.11 - 0.9);
     let rest: Vec<DVec3> = grid.collect();
-    let mut carried = rest.clone();
-    stroke.advect(&mut carried);
+    let mut images = rest.clone();
+    stroke.advect(&mut images);
     assert_eq!(
         crate::flow::advect_points(&rest, std::slice::from_ref(&stroke), &isochore_mesh::NoProgress).unwrap(),
-        carried
+        images
     );
     let (mut inside, mut outside) = (0, 0);
-    for (rest, carried) in rest.iter().zip(&carried) {
-        if rest != carried {
+    for (rest, image) in rest.iter().zip(&images) {
+        if rest != image {
             assert_eq!(reach.distance(*rest), 0.0, "{rest}");
             inside += 1;
         }
         outside += usize::from(reach.distance(*rest) > 0.0);
     }
     assert!(inside > 500 && outside > 500, "{inside} {outside}");
-    // Both are built of the same two ways, so a field in world coordinates reaches as far.
+    // Both consist of the same two segments, so the field in world coordinates has the same reach.
     let mask =
         crate::fields::Mask::new(vec![crate::fields::Pin::new(DVec3::X, 0.1, 0.1).unwrap()], None, vec![]).unwrap();
     let masked = stroke.masked(&Arc::new(mask), Aabb::of(rest.iter().copied()), 0.25).unwrap();
-    let mut carried = rest.clone();
-    masked.advect(&mut carried);
-    assert!(rest.iter().zip(&carried).all(|(rest, carried)| rest == carried || masked.reach().distance(*rest) == 0.0));
+    let mut images = rest.clone();
+    masked.advect(&mut images);
+    assert!(rest.iter().zip(&images).all(|(rest, image)| rest == image || masked.reach().distance(*rest) == 0.0));
 }

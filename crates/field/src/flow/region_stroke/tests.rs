@@ -46,7 +46,8 @@ fn product_form(inner: &dyn Distance, placement: Pose, motion: RegionMotion, poi
     let blend = slope / 0.4 * (placement.rotation * gradient);
     let [(alpha, alpha_slope), (beta, beta_slope)] = match motion {
         RegionMotion::Translation(shift) => {
-            // Two orthonormal vectors across the shift, whose product is its direction; about the gauge's center.
+            // Two orthonormal vectors across the shift, whose cross product is its direction. The origin is
+            // the center of the gauge.
             let (u, w) = shift.normalize().any_orthonormal_pair();
             let sign = u.cross(w).dot(shift).signum();
             let r = point - placement.transform(inner.centroid());
@@ -72,7 +73,7 @@ fn the_curl_of_the_squared_profile_is_the_product_form() {
             for point in scattered_points(300, 1.0) {
                 let velocity = field.velocity(point);
                 let expected = product_form(&*inner, placement, motion, point);
-                // Roundings of numbers near one, in world and in tool coordinates, over a support of 0.4.
+                // Rounding of numbers near one, in world and in tool coordinates, over a support of 0.4.
                 assert!(velocity.distance(expected) < 1e-13, "{name} {motion:?} at {point}: {velocity} {expected}");
                 moving += usize::from(velocity != DVec3::ZERO);
             }
@@ -96,7 +97,7 @@ fn the_extended_spherical_field_is_equation_12_2() {
         let blend = if u > 0.0 && u < 1.0 { -gradient / 0.35 } else { DVec3::ZERO };
         let p = (1.0 - u) * DVec3::X + point.x * blend;
         let q = (1.0 - u) * DVec3::Y + point.y * blend;
-        // Roundings of numbers near one.
+        // Rounding of numbers near one.
         assert!(field.velocity(point).distance(0.8 * p.cross(q)) < 1e-14, "{point}");
     }
 }
@@ -108,9 +109,10 @@ fn every_region_is_a_divergence_free_field() {
             let stroke = region(&inner, placement).stroke(motion, 0.1, WORLD).unwrap();
             let field = stroke.fields()[0].at(0.4);
             let seen = deviation(&*field, &scattered_points(200, 0.9), 1e-4);
-            // h²/6 of third derivatives of the order of 100/R³ = 2e3; second ones jump where the layer ends.
+            // h²/6 of third derivatives of the order of 100/R³ = 2e3; second derivatives jump at the end of
+            // the layer.
             assert!(seen.curl < 1e-4 && seen.divergence < 1e-3 && seen.gradient < 1e-4, "{name} {seen:?}");
-            // A fourth power at the end of the layer leaves no kink that shows.
+            // A fourth power at the end of the layer has no noticeable kink.
             let flux = worst_field_flux(&*field, |_| f64::INFINITY, 0.5);
             assert!(flux < QUADRATURE_NOISE, "{name}: {flux:e}");
         }
@@ -131,7 +133,7 @@ fn the_inside_moves_rigidly_and_the_outside_rests() {
                 let mut moved = [point];
                 stroke.advect_chunk(&mut moved);
                 if distance < -1e-9 {
-                    // Roundings of some dozens of closed steps.
+                    // Rounding of some dozens of steps in closed form.
                     assert!(moved[0].distance(origin + turn * (point - origin)) < 1e-13, "{name} {point}");
                 }
                 if !stroke.may_touch(point, 0.0) {
@@ -143,11 +145,11 @@ fn the_inside_moves_rigidly_and_the_outside_rests() {
 }
 
 #[test]
-fn a_turning_half_space_touches_no_ball_that_it_does_not_reach() {
+fn a_rotating_half_space_touches_only_the_balls_that_it_reaches() {
     let inner: Arc<dyn Distance> = Arc::new(HalfSpace::new(DVec3::ZERO, DVec3::Z).unwrap());
     let motion = RegionMotion::Rotation { origin: DVec3::ZERO, axis: DVec3::X, angle: 0.5 };
     let stroke = Stroke::Move(region(&inner, Pose::IDENTITY).stroke(motion, 0.1, WORLD).unwrap());
-    // The plane is at height y tan(0.5) in the end, and the layer 0.4/cos(0.5) above it.
+    // At the end the plane is at height y tan(0.5), and the layer ends 0.4/cos(0.5) above it.
     let edge = |y: f64| y * libm::tan(0.5) + 0.4 / libm::cos(0.5);
     for y in [0.5, 1.0, 3.0] {
         assert!(stroke.may_touch(DVec3::new(0.0, y, edge(y) - 0.01), 0.0), "{y}");
@@ -157,7 +159,7 @@ fn a_turning_half_space_touches_no_ball_that_it_does_not_reach() {
 }
 
 #[test]
-fn a_region_without_a_way_is_refused() {
+fn rejects_invalid_motions() {
     let inner: Arc<dyn Distance> = Arc::new(Sphere::new(0.3).unwrap());
     let kinked = Region::new(Arc::clone(&inner), Pose::IDENTITY, 0.4, Profile::Thesis);
     assert_eq!(kinked.unwrap_err(), ToolError::NoSquare(Profile::Thesis));

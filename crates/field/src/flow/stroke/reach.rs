@@ -1,4 +1,4 @@
-//! Strokes as a session uses them: one short way at a time, over the few points that it can touch.
+//! The reach of a stroke, and advection of points in place, as an interactive session uses them.
 
 use glam::DVec3;
 use isochore_mesh::Aabb;
@@ -6,12 +6,13 @@ use rayon::prelude::*;
 
 use super::Stroke;
 
-/// Points that one task carries. Larger leaves threads idle at the end of a short way; smaller fills the lanes of the kernel less
-/// well.
+/// Points of one task. A larger value leaves threads idle at the end of a short stroke; a smaller value
+/// fills the lanes of the kernel less well.
 const CHUNK: usize = 256;
 
 impl Stroke {
-    /// Box in the world outside which the stroke moves nothing; infinite where it acts everywhere, empty for a stamp.
+    /// Box in the world outside which the stroke moves nothing. Infinite for a stroke that acts
+    /// everywhere, and empty for a stamp.
     pub fn reach(&self) -> Aabb {
         match self {
             Self::Move(stroke) => stroke.reach(),
@@ -21,8 +22,9 @@ impl Stroke {
         }
     }
 
-    /// Carries `points` through the stroke in place, in parallel, and returns how many times the field was evaluated. Each point
-    /// gets the bits that [`advect_points`](crate::advect_points) gives it, whatever the other points. A stamp carries nothing.
+    /// Advects `points` through the stroke in place, in parallel, and returns the number of evaluations
+    /// of the field. Each point gets the same bits as from [`advect_points`](crate::advect_points). A
+    /// stamp moves no points.
     pub fn advect(&self, points: &mut [DVec3]) -> u64 {
         if points.len() <= CHUNK {
             return self.advect_chunk(points);

@@ -14,10 +14,10 @@ use crate::{
     flow::{Move, advect_points, advection::bits},
 };
 
-/// The box of what twists and bends carry here.
+/// The box of the points that twists and bends advect in these tests.
 pub(crate) const BOUNDS: Aabb = Aabb { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) };
 
-/// A ball of radius 0.3 and support 0.3 that moves from one place to another.
+/// A ball of radius 0.3 and support 0.3 that moves between two positions.
 pub(crate) fn ball(from: [f64; 3], to: [f64; 3], step: f64) -> Stroke {
     let tool = Tool::new(Arc::new(Sphere::new(0.3).unwrap()), 0.3, Profile::Quintic).unwrap();
     let keys = vec![Pose::at(from.into()), Pose::at(to.into())];
@@ -33,7 +33,7 @@ fn rod(step: f64) -> Stroke {
     Stroke::Move(Move::new(Arc::new(tool), keys, step).unwrap())
 }
 
-/// The field of the first leg of a masked stroke, halfway.
+/// The first field of a masked stroke, halfway through its time.
 pub(crate) fn instant(stroke: &Stroke, mask: &Arc<Mask>) -> Box<dyn Field> {
     match stroke.masked(mask, BOUNDS, 0.1).unwrap() {
         Stroke::Field(fields) => fields.fields().next().unwrap().at(0.5),
@@ -62,8 +62,9 @@ fn masked_and_mirrored_fields_are_divergence_free() {
         for (stroke_name, stroke) in &strokes {
             let field = instant(stroke, mask);
             let seen = deviation(&*field, &scattered_points(150, 0.9), 1e-4);
-            // Truncation: h²/6 = 2e-9 times third derivatives. Those of a quintic over 0.3 are of the order of 60/R³ = 2e3, of
-            // products of two of them ten times that; the kernel average's over 0.4 less.
+            // Truncation: h²/6 = 2e-9 times third derivatives. Those of a quintic over 0.3 are of the order
+            // of 60/R³ = 2e3, and those of a product of two ten times that. Those of the kernel average
+            // over 0.4 are smaller.
             assert!(
                 seen.curl < 2e-4 && seen.divergence < 5e-4 && seen.gradient < 2e-4,
                 "{stroke_name} with {mask_name}: {seen:?}"
@@ -88,22 +89,23 @@ fn pinned_points_keep_their_bits() {
         scattered_points(100, 0.11).into_iter().map(|point| point + DVec3::new(0.1, 0.0, 0.9)).collect();
     points.push(DVec3::new(0.1, -0.0, 0.9));
     let free = DVec3::new(0.4, 0.0, 0.9);
-    let carried = advect_points(&[&points[..], &[free]].concat(), &strokes, &NoProgress).unwrap();
-    for (point, carried) in points.iter().zip(&carried) {
-        assert_eq!(bits(*point), bits(*carried));
+    let images = advect_points(&[&points[..], &[free]].concat(), &strokes, &NoProgress).unwrap();
+    for (point, image) in points.iter().zip(&images) {
+        assert_eq!(bits(*point), bits(*image));
     }
-    assert!(carried[points.len()].distance(free) > 0.1);
+    assert!(images[points.len()].distance(free) > 0.1);
 }
 
 #[test]
-fn what_no_mask_touches_flows_as_without() {
+fn points_beyond_the_mask_flow_as_without_it() {
     let far = pinned(vec![pin([3.0, 0.0, 0.0], 0.1, 0.1)]);
     let stroke = rod(0.1);
     let Stroke::Move(motion) = &stroke else { unreachable!() };
     let plain = Stroke::Field(FieldStroke::new(motion.fields(), 0.1).unwrap());
     let masked = stroke.masked(&far, BOUNDS, 0.1).unwrap();
     let points = scattered_points(200, 1.0);
-    // The far pin is as narrow as a third of the support: finer steps, the same flow up to their error of order four.
+    // The far pin is a third as wide as the support, so the steps are finer. The flow is the same up to
+    // their error of order four.
     let [a, b] = [plain, masked].map(|stroke| advect_points(&points, &[stroke], &NoProgress).unwrap());
     assert!(a.iter().zip(&b).all(|(a, b)| a.distance(*b) < 1e-4));
 }
@@ -121,8 +123,8 @@ fn integrated_twists_and_bends_converge_to_the_exact_ones() {
         let exact = advect_points(&points, std::slice::from_ref(&stroke), &NoProgress).unwrap();
         let error = |step: f64| {
             let masked = stroke.masked(&far, BOUNDS, step).unwrap();
-            let carried = advect_points(&points, &[masked], &NoProgress).unwrap();
-            carried.iter().zip(&exact).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+            let images = advect_points(&points, &[masked], &NoProgress).unwrap();
+            images.iter().zip(&exact).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
         };
         let [coarse, fine] = [0.2, 0.1].map(error);
         assert!(fine < 1e-4 && fine < coarse / 12.0, "{coarse:e} {fine:e}");
@@ -140,7 +142,7 @@ fn mirrored_flows_are_symmetric_and_stay_on_their_side() {
     let [a, b, c] = [&points, &images, &on_plane].map(|points| advect_points(points, &strokes, &NoProgress).unwrap());
     let mut largest: f64 = 0.0;
     for ((a, b), c) in a.iter().zip(b).zip(c) {
-        // Planes across an axis reflect without rounding.
+        // Reflection about a plane across an axis has no rounding.
         assert_eq!(a.x, -b.x);
         assert_eq!((a.y, a.z), (b.y, b.z));
         assert_eq!(c.x, 0.0);
@@ -152,7 +154,8 @@ fn mirrored_flows_are_symmetric_and_stay_on_their_side() {
 
 #[test]
 fn a_core_across_the_plane_moves_once_and_rigidly() {
-    // Along the plane, turning about its normal, and off center: its image overlaps it in part.
+    // The tool moves along the plane and turns about its normal, off center, so its image overlaps it
+    // partly.
     let tool = Tool::new(Arc::new(Sphere::new(0.3).unwrap()), 0.3, Profile::Quintic).unwrap();
     let along = |x: f64| {
         let end = Pose { rotation: rotation_from_vector(DVec3::X * 0.4), translation: DVec3::new(x, 0.5, 0.3) };
@@ -197,7 +200,7 @@ fn pins_hold_on_both_sides_of_a_mirror() {
 }
 
 #[test]
-fn motions_that_their_mirror_images_undo_are_refused() {
+fn rejects_motions_that_their_mirror_images_undo() {
     let across = mirrored(vec![plane([0.0; 3], [0.0, 0.0, 1.0])]);
     let along = mirrored(vec![plane([0.0; 3], [1.0, 0.0, 0.0])]);
     let twist = Stroke::Twist(Twist::new(DVec3::ZERO, DVec3::Z, 1.0).unwrap());

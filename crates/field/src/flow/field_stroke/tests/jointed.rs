@@ -13,7 +13,7 @@ fn the_core_of_every_bone_follows_its_bone() {
         let mut followed = vec![0; tool.bones().len()];
         for point in scattered_points(100_000, 1.3) {
             let core = evaluate(&*motions[0].at(0.0), point).core[0];
-            // What a bone keeps to itself shrinks as another bends towards it.
+            // The core of a bone shrinks as another bone bends towards it.
             let is_kept = |motion: &Arc<dyn MovingField>| {
                 (0..=8).all(|index| {
                     let field = motion.at(f64::from(index) / 8.0);
@@ -26,17 +26,18 @@ fn the_core_of_every_bone_follows_its_bone() {
             let mut moved = [point];
             stroke.advect_chunk(&mut moved);
             let expected = pose_of(&tool, &keys[keys.len() - 1], core as usize, point);
-            // Roundings of a hundred closed steps.
+            // Rounding of a hundred steps in closed form.
             assert!(moved[0].distance(expected) < 1e-13, "bone {core} at {point}");
             followed[core as usize] += 1;
         }
-        // A finger's bone has a volume of 0.02, and the cube 5700 points a unit of volume: a quarter of it at least.
+        // A bone of a finger has a volume of 0.02, and the cube 5700 points per unit of volume. At least a
+        // quarter of the points are in the core.
         assert!(followed.iter().all(|&count| count > 30), "{followed:?}");
     }
 }
 
 #[test]
-fn what_may_not_be_touched_is_not_moved_and_the_first_part_ends_on_the_way() {
+fn untouchable_points_do_not_move_and_a_truncated_stroke_ends_on_the_path() {
     for (tool, keys) in motions() {
         let stroke = Stroke::Field(FieldStroke::new(tool.motions(&keys).unwrap(), 0.25).unwrap());
         let points = scattered_points(400, 2.0);

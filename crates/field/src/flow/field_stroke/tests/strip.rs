@@ -9,7 +9,7 @@ use crate::fields::{
 };
 
 #[test]
-fn the_ring_carries_its_core_along_exactly() {
+fn the_core_of_a_ring_moves_exactly() {
     let ring = Ring::new(TILTED, 0.7).unwrap();
     let around = ring.shape().axis.any_orthonormal_vector();
     let start = TILTED.center + around * 1.1;
@@ -19,13 +19,13 @@ fn the_ring_carries_its_core_along_exactly() {
     Stroke::Field(stroke).advect_chunk(&mut points);
     // 0.7 in steps of an eighth of the tube's radius: 22.4.
     assert_eq!(steps, 23);
-    // One rounding a step of coordinates below two.
+    // One rounding per step, of coordinates below two.
     assert!(points[0].distance(start + 0.7 * ring.shape().axis) < 23.0 * 4.5e-16);
     assert_eq!(points[1], TILTED.center + around * 3.0);
 }
 
 #[test]
-fn a_straight_core_moves_as_told() {
+fn a_straight_core_follows_its_motion() {
     let line = [DVec3::new(-2.0, 0.0, 0.0), DVec3::new(2.0, 0.0, 0.0)];
     let flow = |motion| {
         let strip = Strip::new(StripSpine::through(&line).unwrap(), round(), motion).unwrap();
@@ -34,7 +34,7 @@ fn a_straight_core_moves_as_told() {
         points
     };
     let [along, outside] = flow(StripMotion::Along { distance: 0.5 });
-    // Straight: the field is constant in the core, and Runge-Kutta steps are exact up to rounding.
+    // The field is constant in a straight core, so Runge-Kutta steps are exact up to rounding.
     assert!(along.distance(DVec3::new(0.3, 0.1, 0.15)) < 1e-14);
     assert_eq!(outside, DVec3::new(0.0, 0.0, 0.6));
     let [across, _] = flow(StripMotion::Across { travel: DVec3::new(0.3, 0.2, 0.4) });
@@ -42,7 +42,7 @@ fn a_straight_core_moves_as_told() {
 }
 
 #[test]
-fn what_lies_on_the_spine_stays_on_it() {
+fn points_on_the_spine_stay_on_it() {
     let spine = StripSpine::between(&START, &end()).unwrap();
     let start = spine.at(0.0);
     let shifted: Vec<DVec3> = end().iter().map(|point| *point + TRAVEL).collect();
@@ -51,18 +51,19 @@ fn what_lies_on_the_spine_stays_on_it() {
         let shape = StripShape::round(0.2, 0.25, Profile::Quintic).unwrap();
         let strip = Strip::new(spine.clone(), shape, ACROSS).unwrap();
         let stroke = Stroke::Field(FieldStroke::new(vec![Arc::new(strip)], step).unwrap());
-        // Between the ends that fade.
+        // Away from the ends, where the field fades.
         let mut points: Vec<DVec3> = (8..=13).map(|i| start.position(start.domain().1 * f64::from(i) / 20.0)).collect();
         stroke.advect_chunk(&mut points);
         points.iter().map(|point| ClosestPoint::new(&finish).closest(*point).distance).fold(0.0, f64::max)
     };
     let [coarse, fine] = [0.5, 0.25].map(off);
-    // Points on the spine see smooth velocities but for jumps of the third derivative at its knots: between orders 2 and 4.
+    // The velocity on the spine is smooth except for jumps of its third derivative at the knots, so the
+    // order is between 2 and 4.
     assert!(fine < 1e-4 && fine < coarse / 3.5, "{coarse:e} {fine:e}");
 }
 
 #[test]
-fn what_may_not_be_touched_is_not_moved() {
+fn untouchable_points_do_not_move() {
     for strip in all_strips().into_iter().skip(5).step_by(3) {
         let stroke = Stroke::Field(FieldStroke::new(vec![Arc::new(strip)], 0.2).unwrap());
         let points = scattered_points(900, 1.8);
