@@ -1,7 +1,7 @@
 //! Contact: the points of the tool's surface to which a step moves the vertices inside the tool.
 //!
 //! Take the coordinates of the tool at the end of a step. A vertex that the tool has run over is inside.
-//! If the vertex had moved rigidly with the tool, it would still be outside. On the segment between
+//! If the vertex had moved rigidly with the tool, it would still be outside. On the line between
 //! these two positions the vertex goes to the first point where the distance is zero.
 
 use glam::DVec3;
@@ -91,9 +91,9 @@ pub(super) fn dent(positions: &mut [DVec3], motion: &StepMotion<'_>, cause: Caus
     near
 }
 
-/// A search for the first zero of the distance on a segment from inside the tool to outside.
+/// A search for the first zero of the distance on a line from inside the tool to outside.
 ///
-/// Positions on the segment are fractions of its length.
+/// Positions on the line are fractions of its length.
 #[derive(Debug, Clone, Copy)]
 struct Search {
     from: DVec3,
@@ -105,7 +105,7 @@ struct Search {
     outside: (f64, f64),
     /// Position to evaluate next.
     at: f64,
-    /// Point to evaluate next once the search has left the segment.
+    /// Point to evaluate next once the search has left the line.
     aside: Option<DVec3>,
     value: f64,
     gradient: DVec3,
@@ -114,9 +114,9 @@ struct Search {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
-    /// Checks whether the end of the segment is outside.
+    /// Checks whether the end of the line is outside.
     End,
-    /// Marches along the segment by steps that cannot pass the surface.
+    /// Marches along the line by steps that cannot pass the surface.
     March,
     /// Shrinks the bracket between a point inside and a point outside.
     Bracket,
@@ -125,8 +125,8 @@ enum Stage {
     Done,
 }
 
-/// Shortest step of the march, as a fraction of the segment. A larger value may pass over details of a
-/// side wall; a smaller value takes long if the segment runs along the surface.
+/// Shortest step of the march, as a fraction of the line. A larger value may pass over details of a
+/// side wall; a smaller value takes long if the line runs along the surface.
 const SHORTEST_STEP: f64 = 1.0 / 32.0;
 
 /// Most evaluations. The march takes 32, and a bisection at every third evaluation shrinks the bracket to
@@ -141,7 +141,7 @@ const MAX_NEWTON_STEPS: u64 = 20;
 const AIM: f64 = 1.0 / 16.0;
 
 impl Search {
-    /// A search for the first point of a segment that is on the surface.
+    /// A search for the first point of a line that is on the surface.
     fn along(from: DVec3, distance: f64, to: DVec3) -> Self {
         Self {
             from,
@@ -164,8 +164,8 @@ impl Search {
 
     /// The point to evaluate next, in tool coordinates.
     fn point(&self) -> DVec3 {
-        let on_segment = || if self.at == 1.0 { self.to } else { self.from + self.at * (self.to - self.from) };
-        self.aside.unwrap_or_else(on_segment)
+        let on_line = || if self.at == 1.0 { self.to } else { self.from + self.at * (self.to - self.from) };
+        self.aside.unwrap_or_else(on_line)
     }
 
     /// Processes the distance at [`point`](Self::point) and chooses the next point.
@@ -176,7 +176,7 @@ impl Search {
         (self.value, self.gradient) = (value, gradient);
         self.evaluations += 1;
         match self.stage {
-            // A vertex that touches the tool stays on it. The whole segment can be inside, as for the
+            // A vertex that touches the tool stays on it. The whole line can be inside, as for the
             // midpoint of a flat edge; such a vertex takes the shortest path out.
             Stage::End if value.abs() <= AIM * rounding => return self.stage = Stage::Done,
             Stage::End if value < 0.0 => self.stage = Stage::Leave,
