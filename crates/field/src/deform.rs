@@ -2,6 +2,7 @@
 
 mod balance;
 mod curved_triangle;
+mod error;
 mod guard;
 mod lock;
 mod passage;
@@ -11,8 +12,9 @@ mod receipt;
 mod refine;
 mod tessellation;
 
-use isochore_mesh::{Cancelled, ClosedMesh, MeshError, Monitor, Topology, TriMesh, signed_volume};
+use isochore_mesh::{ClosedMesh, Monitor, Topology, TriMesh, signed_volume};
 
+pub use error::DeformError;
 pub use lock::{Lock, lock_part, lock_volume};
 pub use press::PressError;
 pub use receipt::{Note, Receipt, StageSeconds, StrokeReceipt};
@@ -64,34 +66,6 @@ pub struct Deformed {
     pub strokes: Vec<Stroke>,
     /// Measures of the result and of each pass.
     pub receipt: Receipt,
-}
-
-/// Errors of [`deform`].
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum DeformError {
-    /// The monitor cancelled the deformation.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// The mesh has an index out of range or a coordinate that is not finite.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-    /// A coordinate is beyond the range of `f64`.
-    #[error("vertex {vertex} is moved beyond the range of f64; coordinates or strokes are too large")]
-    Overflow {
-        /// Index of the vertex, inserted ones included.
-        vertex: usize,
-    },
-    /// A stamp cannot be pressed.
-    #[error("stroke {stroke}: {source}")]
-    Stamp {
-        /// Index of the stroke, from 0.
-        stroke: usize,
-        /// Cause.
-        source: PressError,
-    },
-    /// The volume of the input mesh is not finite.
-    #[error("the volume is beyond the range of f64; coordinates are too large")]
-    VolumeOverflow,
 }
 
 /// Deforms `mesh` by the strokes, one after the other.

@@ -11,6 +11,7 @@
 mod contact;
 mod footprint;
 mod rim;
+mod step_motion;
 
 use contact::Cause;
 use glam::DVec3;
@@ -21,16 +22,14 @@ use super::{
     refine::{Criteria, Refinement},
     tessellation::Tessellation,
 };
-use crate::{
-    fields::{Tool, pose::Placement},
-    flow::Stamp,
-};
+use crate::flow::Stamp;
+use step_motion::StepMotion;
 
 /// Errors when pressing a [`Stamp`] into a surface.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PressError {
     /// The surface is open or encloses no volume.
-    #[error("a stamp needs a closed mesh with a volume, to raise the volume that it displaces; close the mesh")]
+    #[error("a stamp cannot raise what it displaces on an open mesh or one without volume; close the mesh")]
     NoVolume,
     /// The tool is inside the surface at its first key.
     #[error("the stamp starts {depth} deep in the surface, at vertex {vertex}; start it outside")]
@@ -86,6 +85,12 @@ const MAX_ROUNDS: usize = 24;
 /// takes more steps.
 const MOST_STRETCH: f64 = 0.125;
 
+/// Depth to which the tool may start inside the surface, as a fraction of the
+/// [relief](Stamp::relief). After an earlier stamp, flat triangles between vertices on the tool cut
+/// about as deep into it. A larger value accepts a tool that starts inside; a smaller value refuses to
+/// continue from an earlier stamp.
+const START_DEPTH: f64 = 0.5;
+
 /// Presses `stamp` into the image. The image is frozen before and after each step. Without `criteria`,
 /// no triangle is split.
 pub(crate) fn press(
@@ -110,7 +115,7 @@ pub(crate) fn press(
             pressed.refinement.add(&footprint::resolve(mesh, &motion, rim_edge, criteria, monitor)?);
         }
         if time == 0.0 {
-            motion.check_start(&mesh.image)?;
+            check_start(&motion, &mesh.image)?;
         }
         let step = step(mesh, &motion, volume);
         pressed.add(&step);
@@ -187,64 +192,16 @@ fn is_overstretched(before: &[DVec3], after: &[DVec3], triangles: &[[u32; 3]]) -
     })
 }
 
-/// One step of a stamp's path.
-#[derive(Debug)]
-struct StepMotion<'a> {
-    tool: &'a Tool,
-    start: Placement,
-    end: Placement,
-    /// Longest edge at the contact, model units.
-    relief: f64,
-    /// Distances up to this one are zero up to rounding, model units.
-    rounding: f64,
-}
-
-/// Rounding error of a distance, in units of the rounding of the coordinates. A larger value leaves the
-/// tool inside the surface; a smaller value sees contacts that are rounding alone.
-const ROUNDINGS: f64 = 64.0;
-
-/// Depth to which the tool may start inside the surface, as a fraction of the
-/// [relief](Stamp::relief). After an earlier stamp, flat triangles between vertices on the tool cut
-/// about as deep into it. A larger value accepts a tool that starts inside; a smaller value refuses to
-/// continue from an earlier stamp.
-const START_DEPTH: f64 = 0.5;
-
-/// Fewest edges across the support at the rim. A larger value costs triangles; a smaller value makes an
-/// angular rim.
-const EDGES_ACROSS_RIM: f64 = 8.0;
-
-impl<'a> StepMotion<'a> {
-    fn new(stamp: &'a Stamp, from: f64, to: f64) -> Self {
-        let path = stamp.path();
-        let [start, end] = [from, to].map(|time| path.pose_at(time));
-        let bounds = path.tool().support_bounds();
-        let extent = bounds.min.abs().max(bounds.max.abs()).max_element()
-            + start.translation.abs().max(end.translation.abs()).max_element();
-        Self {
-            tool: path.tool(),
-            start: Placement::from(&start),
-            end: Placement::from(&end),
-            relief: stamp.relief(),
-            rounding: ROUNDINGS * f64::EPSILON * extent,
+/// Checks that the tool starts outside the surface.
+fn check_start(motion: &StepMotion<'_>, positions: &[DVec3]) -> Result<(), PressError> {
+    let near = contact::Near::of(positions, motion.tool, &motion.start);
+    let depth = |index: usize| -near.distances[index];
+    match (0..near.vertices.len()).max_by(|&a, &b| depth(a).total_cmp(&depth(b))) {
+        Some(deepest) if depth(deepest) > START_DEPTH * motion.relief => {
+            let vertex = near.vertices[deepest] as usize;
+            Err(PressError::StartsInside { vertex, depth: depth(deepest) })
         }
-    }
-
-    /// Longest edge at the rim, model units.
-    fn rim_edge(&self) -> f64 {
-        self.tool.support() / EDGES_ACROSS_RIM
-    }
-
-    /// Checks that the tool starts outside the surface.
-    fn check_start(&self, positions: &[DVec3]) -> Result<(), PressError> {
-        let near = contact::Near::of(positions, self.tool, &self.start);
-        let depth = |index: usize| -near.distances[index];
-        match (0..near.vertices.len()).max_by(|&a, &b| depth(a).total_cmp(&depth(b))) {
-            Some(deepest) if depth(deepest) > START_DEPTH * self.relief => {
-                let vertex = near.vertices[deepest] as usize;
-                Err(PressError::StartsInside { vertex, depth: depth(deepest) })
-            }
-            _ => Ok(()),
-        }
+        _ => Ok(()),
     }
 }
 

@@ -8,7 +8,7 @@ use glam::DVec3;
 use isochore_mesh::{Distance, DistanceBlock, LANES, PointBlock};
 use rayon::prelude::*;
 
-use super::StepMotion;
+use super::step_motion::StepMotion;
 use crate::fields::{Tool, pose::Placement};
 
 /// The vertices near a tool, with their distances from it.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use isochore_mesh::{Cancelled, Monitor};
 
-use super::{StepMotion, contact::sample};
+use super::{contact::sample, step_motion::StepMotion};
 use crate::deform::{
     curved_triangle::edge_lengths,
     refine::{Criteria, Refinement, split_long_edges},

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::{StepMotion, contact::Near};
+use super::{contact::Near, step_motion::StepMotion};
 
 /// Directions in which vertices are raised.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use isochore_mesh::{
 use super::*;
 use crate::{
     deform::{DeformError, DeformOptions, Deformed, Note, RefineOptions, deform},
-    fields::{Pose, Profile, rotation_from_vector},
+    fields::{Pose, Profile, Tool, pose::Placement, rotation_from_vector},
     flow::{AdvectError, Move, Stroke, Twist, advect_points},
 };
 
