@@ -56,7 +56,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Deform.** [`deform`] advects the vertices of a mesh, refines it and locks its volume. The
+//! **Deform.** [`deform()`] advects the vertices of a mesh, refines it and locks its volume. The
 //! [`Receipt`] reports what each pass did:
 //!
 //! ```

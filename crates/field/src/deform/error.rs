@@ -4,7 +4,7 @@ use isochore_mesh::{Cancelled, MeshError};
 
 use super::PressError;
 
-/// Errors of [`deform`](crate::deform).
+/// Errors of [`deform()`](crate::deform()).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DeformError {
     /// The monitor cancelled the deformation.

@@ -4,7 +4,7 @@
 /// in memory.
 pub(in crate::flow) const MAX_STEPS: usize = 1_000_000;
 
-/// Errors of [`Move::new`].
+/// Errors of [`Move::new`](super::Move::new).
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum MoveError {
     /// The step is not a positive fraction.
