@@ -57,7 +57,7 @@ fn steps(stroke: &Stroke) -> usize {
     match stroke {
         Stroke::Move(stroke) => stroke.steps(),
         Stroke::Field(stroke) => stroke.steps(),
-        Stroke::Stamp(stroke) => stroke.way().steps(),
+        Stroke::Stamp(stroke) => stroke.path().steps(),
         Stroke::Twist(_) | Stroke::Bend(_) => 1,
     }
 }
