@@ -70,7 +70,7 @@ fn rejects_invalid_recipes() {
     expect_rejected("support = 0.3", "suport = 0.3", &[], &["line 8: tools.ball.suport: unknown key", "`support`"]);
     expect_rejected("\"quintic\"", "\"quintik\"", &[], &["line 9: tools.ball.profile", "`quintik`", "`quintic`"]);
     expect_rejected("{ at = [0, 0, 1.8] }, ", "", &[], &["line 14: stroke.0.keys", "at least 2"]);
-    expect_rejected("30.0]", "180.0]", &[], &["stroke.0.keys.1.rotate", "add a pose between"]);
+    expect_rejected("30.0]", "180.0]", &[], &["stroke.0.keys.1.rotate", "add a key between"]);
     expect_rejected("[0, 0, 1, 30.0]", "[0, 0, 0, 30.0]", &[], &["stroke.0.keys.1.rotate", "zero"]);
     let twist = "kind = \"twist\"\norigin = [0, 0, 0]\naxis = [0, 0, 0]\ndegrees_per_unit = 1\n";
     expect_rejected("[output]", &format!("[[stroke]]\n{twist}[output]"), &[], &["stroke.1.axis", "zero"]);

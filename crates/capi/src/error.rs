@@ -3,6 +3,7 @@
 use std::{
     cell::RefCell,
     ffi::{CString, c_char},
+    fmt::Display,
     panic::{AssertUnwindSafe, catch_unwind},
 };
 
@@ -10,7 +11,9 @@ use isochore_mesh::{
     Cancelled, MeshError, SelfIntersectionError,
     io::{ParseError, ReadError, WriteError},
 };
-use isochore_sculpt::{BuildToolError, ReplayError, SceneError, recipe::RecipeError, session::SessionError};
+use isochore_sculpt::{
+    BuildToolError, ReplayError, SceneError, files::LoadError, recipe::RecipeError, session::SessionError,
+};
 
 /// Result of a call.
 #[repr(C)]
@@ -123,8 +126,8 @@ impl From<SelfIntersectionError> for Failure {
     }
 }
 
-impl From<RecipeError> for Failure {
-    fn from(error: RecipeError) -> Self {
+impl<P: Display> From<RecipeError<P>> for Failure {
+    fn from(error: RecipeError<P>) -> Self {
         Self::new(Status::Recipe, error)
     }
 }
@@ -135,6 +138,13 @@ impl From<ReplayError> for Failure {
             ReplayError::Cancelled(cancelled) => cancelled.into(),
             error => Self::new(Status::Recipe, error),
         }
+    }
+}
+
+impl From<LoadError> for Failure {
+    fn from(error: LoadError) -> Self {
+        let status = if error.io_error().is_some() { Status::File } else { Status::Recipe };
+        Self::new(status, error)
     }
 }
 

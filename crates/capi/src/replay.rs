@@ -7,7 +7,12 @@ use std::{
 
 use bytemuck::cast_slice;
 use glam::DVec3;
-use isochore_sculpt::{Meshes, Recipe, Report, Source, recipe::Format, replay, replay_points};
+use isochore_sculpt::{
+    Meshes, Recipe, Report, Source,
+    files::{self, LoadError, NamedFile, TargetMesh},
+    recipe::Format,
+    replay, replay_points,
+};
 
 use crate::{
     error::{Failure, Status, guarded},
@@ -54,9 +59,9 @@ pub unsafe extern "C" fn isochore_run(
         if mesh.is_null() {
             return Err(Failure::argument("mesh is NULL"));
         }
-        let recipe = Recipe::parse(recipe_text, Format::of_text(recipe_text), &[])?;
+        let mut recipe = Recipe::parse(recipe_text, Format::of_text(recipe_text), &[])?;
         // SAFETY: the caller guarantees it.
-        let meshes = unsafe { named(named_meshes) }?;
+        let meshes = load(&mut recipe, TargetMesh::Required, unsafe { named(named_meshes) }?)?;
         let watcher = Watcher::new(progress, context);
         let replay = replay(&recipe, &meshes, &watcher)?;
         if !report.is_null() {
@@ -101,9 +106,9 @@ pub unsafe extern "C" fn isochore_run_points(
         let (recipe_text, named_meshes) = unsafe { (text("recipe", recipe)?, array("meshes", meshes, mesh_count)?) };
         // SAFETY: the caller guarantees it.
         let at: Vec<DVec3> = unsafe { finite_values("points", points, 3, point_count, f64::is_finite) }?;
-        let recipe = Recipe::parse(recipe_text, Format::of_text(recipe_text), &[])?;
+        let mut recipe = Recipe::parse(recipe_text, Format::of_text(recipe_text), &[])?;
         // SAFETY: the caller guarantees it.
-        let meshes = unsafe { named(named_meshes) }?;
+        let meshes = load(&mut recipe, TargetMesh::Optional, unsafe { named(named_meshes) }?)?;
         let advected = replay_points(&recipe, &meshes, &at, &Watcher::new(progress, context))?;
         if !warnings.is_null() {
             let json = serde_json::to_string(&advected.warnings).map_err(Failure::argument)?;
@@ -126,4 +131,9 @@ pub(crate) unsafe fn named(given: &[NamedMesh]) -> Result<Meshes, Failure> {
         Ok((name.to_owned(), Arc::clone(&mesh.mesh)))
     };
     given.iter().map(one).collect()
+}
+
+/// Takes the meshes that the recipe names from `given`.
+fn load(recipe: &mut Recipe, target: TargetMesh, given: Meshes) -> Result<Meshes, LoadError> {
+    files::load(recipe, target, &|name| given.get(name).map(|mesh| NamedFile::Mesh(Arc::clone(mesh))))
 }

@@ -84,7 +84,7 @@ static void recipes(void) {
 
     twisted = NULL;
     CHECK(isochore_run(TWIST, NULL, 0, NULL, NULL, &twisted, NULL) == ISOCHORE_STATUS_RECIPE);
-    CHECK(strstr(isochore_last_error(), "`tetrahedron` was not loaded") && twisted == NULL);
+    CHECK(strstr(isochore_last_error(), "`tetrahedron` was not passed in") && twisted == NULL);
     CHECK(isochore_run("recipe = 1\n[targe]\n", NULL, 0, NULL, NULL, &twisted, NULL) == ISOCHORE_STATUS_RECIPE);
     CHECK(strstr(isochore_last_error(), "line 2"));
     CHECK(isochore_run(NULL, NULL, 0, NULL, NULL, &twisted, NULL) == ISOCHORE_STATUS_ARGUMENT);

@@ -10,7 +10,8 @@ use isochore_mesh::{
     io::{PointStreamError, ReadError, WriteError},
 };
 use isochore_sculpt::{
-    ReplayError,
+    ReplayError, StreamProblem,
+    files::LoadError,
     recipe::{Location, RecipeError},
 };
 
@@ -23,6 +24,10 @@ pub(crate) enum CommandError {
     Recipe { path: PathBuf, source: RecipeError },
     #[error("{}: {source}", path.display())]
     Replay { path: PathBuf, source: ReplayError },
+    #[error("{}: {source}", path.display())]
+    Stream { path: PathBuf, source: RecipeError<StreamProblem> },
+    #[error(transparent)]
+    Load(#[from] LoadError),
     #[error(transparent)]
     ReadMesh(#[from] ReadError),
     #[error(transparent)]
@@ -85,17 +90,21 @@ impl CommandError {
     fn to_json(&self) -> serde_json::Value {
         let mut json = serde_json::json!({ "error": self.to_string() });
         let file = match self {
-            Self::Recipe { path, .. } | Self::Replay { path, .. } | Self::File { path, .. } => Some(path),
+            Self::Recipe { path, .. }
+            | Self::Replay { path, .. }
+            | Self::Stream { path, .. }
+            | Self::File { path, .. } => Some(path.as_path()),
+            Self::Load(error) => Some(error.path()),
             Self::ReadMesh(
                 ReadError::UnknownFormat { path } | ReadError::Io { path, .. } | ReadError::Parse { path, .. },
-            ) => Some(path),
+            ) => Some(path.as_path()),
             Self::WriteMesh(
                 WriteError::UnknownFormat { path }
                 | WriteError::Io { path, .. }
                 | WriteError::Invalid { path, .. }
                 | WriteError::TooLarge { path, .. },
-            ) => Some(path),
-            Self::Points(error) => error.path(),
+            ) => Some(path.as_path()),
+            Self::Points(error) => error.path().map(PathBuf::as_path),
             Self::Usage(_) | Self::Interrupted => None,
         };
         if let Some(file) = file {
@@ -104,6 +113,8 @@ impl CommandError {
         let key = match self {
             Self::Recipe { source, .. } => Some(source.key.clone()),
             Self::Replay { source, .. } => source.key(),
+            Self::Stream { source, .. } => Some(source.key.clone()),
+            Self::Load(error) => Some(error.key.clone()),
             _ => None,
         };
         if let Some(key) = key {

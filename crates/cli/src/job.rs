@@ -6,18 +6,18 @@ use std::{
     time::Instant,
 };
 
-use isochore_mesh::{SelfIntersectionError, io};
+use isochore_mesh::SelfIntersectionError;
 use isochore_picture::Camera;
 use isochore_sculpt::{
     Meshes, Recipe, Replay, ReplayError, Report, Source,
-    recipe::{Format, Override, RecipeError, VertexWeights},
+    files::{self, NamedFile, TargetMesh},
+    recipe::{Format, Override, RecipeError},
     replay,
 };
 
 use crate::{
     command_error::CommandError,
     console::Console,
-    csv_table::CsvTable,
     outputs::{Draft, Drafts, Outputs},
     preview,
     staging::Staging,
@@ -44,20 +44,23 @@ impl Job {
     /// Parses a recipe that is already in memory and overrides keys by `settings`.
     pub(crate) fn parse(path: &Path, bytes: Vec<u8>, settings: &[String]) -> Result<Self, CommandError> {
         let invalid = |source| invalid_recipe(path, source);
-        let overrides: Vec<Override> =
-            settings.iter().map(|text| Override::parse(text)).collect::<Result<_, _>>().map_err(invalid)?;
+        let overrides: Vec<Override> = settings
+            .iter()
+            .map(|text| Override::parse(text))
+            .collect::<Result<_, _>>()
+            .map_err(|error| invalid(RecipeError::from(error)))?;
         let text = std::str::from_utf8(&bytes).map_err(|error| {
             CommandError::file(path, format!("the recipe is not valid UTF-8 at byte {}", error.valid_up_to()))
         })?;
         let is_json = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
         let format = if is_json { Format::Json } else { Format::Toml };
         let recipe = Recipe::parse(text, format, &overrides).map_err(invalid)?;
-        let resolve = |name: &Option<String>| name.as_ref().map(|name| beside(path, name));
+        let resolve = |name: &Option<String>| name.as_ref().map(|name| files::beside(path, name));
         let outputs = Outputs {
             mesh: resolve(&recipe.output.mesh),
             report: resolve(&recipe.output.report),
             preview: resolve(&recipe.output.preview),
-            frames: recipe.output.frames.as_ref().map(|frames| (frames.count, beside(path, &frames.directory))),
+            frames: recipe.output.frames.as_ref().map(|frames| (frames.count, files::beside(path, &frames.directory))),
         };
         Ok(Self { path: path.to_owned(), text: bytes, settings: settings.to_vec(), recipe, outputs })
     }
@@ -65,28 +68,22 @@ impl Job {
     /// Reads the meshes of the recipe. Replaces the file names of spines and of the mask by the
     /// contents of the files.
     pub(crate) fn read_meshes(&mut self) -> Result<Meshes, CommandError> {
-        self.read_curves()?;
-        let meshes = self.read_named_meshes()?;
-        if let Some(VertexWeights::File(name)) = &self.recipe.mask.vertices {
-            let target = self.recipe.target.mesh.as_ref().and_then(|name| meshes.get(name));
-            let weights = read_weights(&self.beside(name), target.map(|mesh| mesh.positions.len()))?;
-            self.recipe.mask.vertices = Some(VertexWeights::Values(weights));
-        }
-        Ok(meshes)
+        self.load(TargetMesh::Required)
     }
 
     /// Reads spines and the meshes of tools, but not the target, which is streamed.
     pub(crate) fn read_tools(&mut self) -> Result<Meshes, CommandError> {
-        self.read_curves()?;
-        let target = self.recipe.target.mesh.take();
-        let meshes = self.read_named_meshes();
-        self.recipe.target.mesh = target;
-        meshes
+        self.load(TargetMesh::Skipped)
+    }
+
+    fn load(&mut self, target: TargetMesh) -> Result<Meshes, CommandError> {
+        let resolve = |name: &str| Some(NamedFile::Path(files::beside(&self.path, name)));
+        Ok(files::load(&mut self.recipe, target, &resolve)?)
     }
 
     /// Path of a file that the recipe calls `name`.
     pub(crate) fn beside(&self, name: &str) -> PathBuf {
-        beside(&self.path, name)
+        files::beside(&self.path, name)
     }
 
     /// Adds the path of the recipe to an error of its replay.
@@ -142,23 +139,6 @@ impl Job {
         Ok(report)
     }
 
-    fn read_curves(&mut self) -> Result<(), CommandError> {
-        let names: Vec<String> = self.recipe.curve_names().into_iter().map(str::to_owned).collect();
-        for name in names {
-            // The tangents of a file with six columns are ignored: strokes fit a spline to the
-            // points.
-            let table = CsvTable::read(&self.beside(&name), &[3, 6])?;
-            let points: Vec<[f64; 3]> = table.rows.iter().map(|row| [row[0], row[1], row[2]]).collect();
-            self.recipe.inline_curve(&name, &points);
-        }
-        Ok(())
-    }
-
-    fn read_named_meshes(&self) -> Result<Meshes, CommandError> {
-        let names = self.recipe.mesh_names().into_iter();
-        names.map(|name| Ok((name.to_owned(), io::read(self.beside(name))?.into()))).collect()
-    }
-
     fn write_preview(&self, draft: &Path, replay: &Replay, staging: &Staging) -> Result<(), CommandError> {
         let camera = self.recipe.output.view.map_or_else(Camera::default, |view| Camera::from_direction(view.into()));
         let picture = preview::before_and_after(&replay.scene.target, &replay.deformed.mesh, &camera)
@@ -184,28 +164,4 @@ impl Job {
 
 fn invalid_recipe(path: &Path, source: RecipeError) -> CommandError {
     CommandError::Recipe { path: path.to_owned(), source }
-}
-
-/// Reads the weights of a mask, one per row. `vertices` is the number of vertices of the target if
-/// it is known.
-fn read_weights(path: &Path, vertices: Option<usize>) -> Result<Vec<f64>, CommandError> {
-    let table = CsvTable::read(path, &[1])?;
-    let weights: Vec<f64> = table.rows.iter().map(|row| row[0]).collect();
-    if let Some(vertices) = vertices.filter(|&vertices| vertices != weights.len()) {
-        let end = if weights.len() > vertices { "has no vertex" } else { "is the last" };
-        let problem = format!("this weight {end}: {} weights for the {vertices} vertices of the target", weights.len());
-        return Err(table.error(weights.len().min(vertices), problem));
-    }
-    match weights.iter().position(|weight| !(0.0..=1.0).contains(weight)) {
-        Some(row) => {
-            let problem = format!("{} is not a weight between 0 (free) and 1 (fixed)", weights[row]);
-            Err(table.error(row, problem))
-        }
-        None => Ok(weights),
-    }
-}
-
-/// Path of the file `name` relative to the folder of the recipe.
-fn beside(recipe: &Path, name: &str) -> PathBuf {
-    recipe.parent().unwrap_or(Path::new("")).join(name)
 }

@@ -58,7 +58,7 @@ pub(crate) fn stream(mut job: Job, console: &Console) -> Result<Outcome, Command
 /// # Errors
 /// The recipe needs a whole mesh, or the extension of the output differs from that of the input.
 fn input(job: &Job) -> Result<PathBuf, CommandError> {
-    let source = |source| CommandError::Recipe { path: job.path.clone(), source };
+    let source = |source| CommandError::Stream { path: job.path.clone(), source };
     let input = job.beside(PointFlow::streamed_file(&job.recipe).map_err(source)?);
     let extension = |path: &PathBuf| path.extension().map(|extension| extension.to_ascii_lowercase());
     match &job.outputs.mesh {

@@ -73,8 +73,7 @@ def _deform(recipe, target, output, *, settings):
 def _origin(recipe, settings):
     """Identifies the inputs of a result: version, settings, and SHA-256 of the recipe and its files."""
     loaded, folder = _parse(recipe, settings)
-    names = {*loaded.mesh_names, *loaded.curve_names, *filter(None, [loaded.weights_name])}
-    named = [folder / name for name in sorted(names)]
+    named = [folder / name for name in loaded.file_names]
     # The run itself reports missing files.
     needed = [path for path in [recipe, *named, *(part for path in named for part in _parts(path))] if path.is_file()]
     return {

@@ -11,6 +11,7 @@ use isochore_mesh::{
 };
 use isochore_sculpt::{
     BuildToolError, ReplayError, SceneError,
+    files::LoadError,
     recipe::{self, Location},
 };
 use pyo3::{
@@ -131,8 +132,8 @@ impl From<DistanceFieldError> for Failure {
     }
 }
 
-impl From<recipe::RecipeError> for Failure {
-    fn from(error: recipe::RecipeError) -> Self {
+impl<P: Display> From<recipe::RecipeError<P>> for Failure {
+    fn from(error: recipe::RecipeError<P>) -> Self {
         let line = if let Location::Line(line) = error.location { Some(line) } else { None };
         Self::Recipe { message: error.to_string(), key: Some(error.key), line }
     }
@@ -156,5 +157,14 @@ impl From<SceneError> for Failure {
 impl From<BuildToolError> for Failure {
     fn from(error: BuildToolError) -> Self {
         SceneError::from(error).into()
+    }
+}
+
+impl From<LoadError> for Failure {
+    fn from(error: LoadError) -> Self {
+        match error.io_error() {
+            Some(source) => Self::File(source.kind(), error.to_string()),
+            None => Self::input(error),
+        }
     }
 }

@@ -1,10 +1,14 @@
 //! Replay of recipes on meshes and points.
 
-use std::collections::BTreeMap;
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use isochore_mesh::Monitor;
 use isochore_sculpt::{
-    Meshes, Recipe, Report, Source, recipe,
+    Meshes, Recipe, Report, Source,
+    files::{self, NamedFile, TargetMesh},
     recipe::{Format, Override},
 };
 use numpy::PyArray2;
@@ -39,25 +43,10 @@ impl LoadedRecipe {
         Ok(Self { recipe, text, settings })
     }
 
-    /// Names of the mesh files that the recipe uses.
+    /// Names of the files that the recipe uses.
     #[getter]
-    fn mesh_names(&self) -> Vec<&str> {
-        self.recipe.mesh_names()
-    }
-
-    /// Names of the curve files that the recipe uses.
-    #[getter]
-    fn curve_names(&self) -> Vec<&str> {
-        self.recipe.curve_names()
-    }
-
-    /// Name of the file with the weights of the mask, if any.
-    #[getter]
-    fn weights_name(&self) -> Option<&str> {
-        match &self.recipe.mask.vertices {
-            Some(recipe::VertexWeights::File(name)) => Some(name),
-            _ => None,
-        }
+    fn file_names(&self) -> Vec<&str> {
+        self.recipe.file_names()
     }
 
     /// Deforms the target. Returns the mesh, the same triangles before deformation, and the report
@@ -65,14 +54,13 @@ impl LoadedRecipe {
     fn replay(
         &self,
         py: Python<'_>,
+        folder: PathBuf,
         meshes: &Bound<'_, PyDict>,
-        curves: BTreeMap<String, Vec<[f64; 3]>>,
-        weights: Option<Vec<f64>>,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> Result<(Mesh, Mesh, String), Failure> {
-        let recipe = self.with(curves, weights);
-        let meshes = meshes_of(meshes)?;
+        let given = meshes_of(meshes)?;
         watched(py, progress, |monitor| {
+            let (recipe, meshes) = self.load(&folder, &given)?;
             let replay = isochore_sculpt::replay(&recipe, &meshes, monitor)?;
             let source = Source { text: self.text.as_bytes(), overrides: &self.settings };
             let report = Report::new(&recipe, source, &replay, &replay.deformed.mesh, monitor)?;
@@ -86,32 +74,36 @@ impl LoadedRecipe {
         &self,
         py: Python<'py>,
         array: &Bound<'py, PyAny>,
+        folder: PathBuf,
         meshes: &Bound<'_, PyDict>,
-        curves: BTreeMap<String, Vec<[f64; 3]>>,
-        weights: Option<Vec<f64>>,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> Result<(Bound<'py, PyArray2<f64>>, Vec<String>), Failure> {
-        let recipe = self.with(curves, weights);
-        let meshes = meshes_of(meshes)?;
+        let given = meshes_of(meshes)?;
         let array = contiguous::<f64>(array)?;
         let points = points("points", &array)?;
         finite_numbers("points", &array)?;
-        let work = |monitor: &dyn Monitor| Ok(isochore_sculpt::replay_points(&recipe, &meshes, points, monitor)?);
+        let work = |monitor: &dyn Monitor| {
+            let (recipe, meshes) = self.load(&folder, &given)?;
+            Ok(isochore_sculpt::replay_points(&recipe, &meshes, points, monitor)?)
+        };
         let replay = watched(py, progress, work)?;
         Ok((points_to_array(py, replay.points)?, replay.warnings))
     }
 }
 
 impl LoadedRecipe {
-    fn with(&self, curves: BTreeMap<String, Vec<[f64; 3]>>, weights: Option<Vec<f64>>) -> Recipe {
+    /// Loads the files that the recipe names, relative to `folder`. Meshes of the caller replace
+    /// files of the same name.
+    fn load(&self, folder: &Path, given: &Meshes) -> Result<(Recipe, Meshes), Failure> {
         let mut recipe = self.recipe.clone();
-        for (name, points) in curves {
-            recipe.inline_curve(&name, &points);
-        }
-        if let Some(weights) = weights {
-            recipe.mask.vertices = Some(recipe::VertexWeights::Values(weights));
-        }
-        recipe
+        let resolve = |name: &str| {
+            Some(match given.get(name) {
+                Some(mesh) => NamedFile::Mesh(Arc::clone(mesh)),
+                None => NamedFile::Path(folder.join(name)),
+            })
+        };
+        let meshes = files::load(&mut recipe, TargetMesh::Required, &resolve)?;
+        Ok((recipe, meshes))
     }
 }
 

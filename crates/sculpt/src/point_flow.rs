@@ -1,12 +1,12 @@
-//! The strokes of a recipe for points that come in chunks.
+//! Deforming points that do not form a mesh.
 
 use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::{Aabb, Cancelled, Monitor};
 
 use crate::{
-    recipe::{Mask, Recipe, RecipeError, RecipeProblem, Stroke},
-    scene::{Meshes, Scene, SceneError, place},
+    recipe::{Mask, Recipe, RecipeError, Stroke},
+    scene::{Meshes, Scene, SceneError, SceneProblem, place},
 };
 
 /// Result of [`replay_points`].
@@ -18,13 +18,25 @@ pub struct PointReplay {
     pub warnings: Vec<String>,
 }
 
+/// Problems of [`PointFlow::streamed_file`].
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StreamProblem {
+    /// A key that applies only to meshes.
+    #[error("needs a mesh, but a stream consists of points; remove it, or do not stream")]
+    NeedsMesh,
+    /// A target that is not a file.
+    #[error("is not a file; set target.mesh to a .ply or .npy file")]
+    NoFile,
+}
+
 /// Advects `points`, in world coordinates, along the strokes of `recipe`.
 ///
-/// The target's mesh is needed only if the mask has a weight for each vertex. If it is among the `meshes`, a rotating
-/// half-space derives its time step from the bounds of the mesh, otherwise from those of the points.
+/// The target's mesh is needed only if the mask has a weight for each vertex. If it is among the
+/// `meshes`, a rotating half-space derives its time step from the bounds of the mesh, otherwise
+/// from those of the points.
 ///
-/// Points have no surface, so stamps are refused. They enclose no volume, so the lock is skipped: points agree with the
-/// vertices of a mesh before its lock.
+/// Points have no surface, so stamps are refused. They enclose no volume, so the lock is skipped:
+/// points agree with the vertices of a mesh before its lock.
 ///
 /// # Errors
 /// [`SceneError`], with the key of the recipe at fault.
@@ -39,24 +51,50 @@ pub fn replay_points(
     Ok(PointReplay { points, warnings: flow.warnings })
 }
 
-/// The strokes of a recipe, ready to carry points. Where they carry a point depends on that point alone, so that points may come
-/// in chunks of any size.
+/// The strokes of a recipe, ready to advect points.
+///
+/// The image of a point depends only on that point, so points may arrive in chunks of any size.
+///
+/// ```
+/// use glam::DVec3;
+/// use isochore_mesh::{Aabb, NoProgress};
+/// use isochore_sculpt::{Meshes, PointFlow, Recipe, recipe::Format};
+///
+/// let text = r#"
+///     recipe = 1
+///     target = { mesh = "points.ply" }
+///     [[stroke]]
+///     kind = "twist"
+///     origin = [0, 0, 0]
+///     axis = [0, 0, 1]
+///     degrees_per_unit = 90.0
+/// "#;
+/// let recipe = Recipe::parse(text, Format::Toml, &[])?;
+/// let flow = PointFlow::new(&recipe, &Meshes::new(), Aabb::EMPTY, &NoProgress)?;
+/// let images = flow.advect(&[DVec3::new(1.0, 0.0, 1.0)], &NoProgress)?;
+/// assert!(images[0].distance(DVec3::new(0.0, 1.0, 1.0)) < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct PointFlow {
     strokes: Vec<field::Stroke>,
-    /// What of the recipe does not apply to points, and what else the user should know.
+    /// Warnings, among them the parts of the recipe that do not apply to points.
     pub warnings: Vec<String>,
 }
 
 impl PointFlow {
-    /// Makes the strokes of `recipe` for points in `bounds`, in world coordinates, by which strokes measure their time steps where
-    /// [they need to](Self::needs_bounds). The bounds of the target's mesh count instead where it is among the `meshes`.
+    /// Builds the strokes of `recipe` for points in `bounds`, in world coordinates.
+    ///
+    /// [Some strokes](Self::needs_bounds) derive their time steps from the bounds. If the target's
+    /// mesh is among the `meshes`, its bounds are used instead.
     ///
     /// # Errors
-    /// [`SceneError`], with the key of the recipe at fault. A stamp is refused, because it needs a surface.
+    /// [`SceneError`], with the key of the recipe at fault. A stamp is refused, because it needs a
+    /// surface.
     pub fn new(recipe: &Recipe, meshes: &Meshes, bounds: Aabb, monitor: &dyn Monitor) -> Result<Self, SceneError> {
         if let Some(index) = recipe.strokes.iter().position(|stroke| matches!(stroke, Stroke::Stamp(_))) {
-            return Err(stamp_on_points(index).into());
+            let key = format!("stroke.{index}");
+            return Err(RecipeError::<SceneProblem>::new(&key, SceneProblem::StampOnPoints).into());
         }
         let (strokes, mut warnings) = Scene::strokes(recipe, meshes, bounds, monitor)?;
         if recipe.volume.lock {
@@ -65,12 +103,11 @@ impl PointFlow {
         Ok(Self { strokes, warnings })
     }
 
-    /// The file of the target, whose points alone are deformed, if `recipe` asks for nothing that they cannot give.
+    /// The file of the target, whose points can be streamed.
     ///
     /// # Errors
-    /// [`RecipeError`], naming the key that needs a mesh.
-    pub fn streamed_file(recipe: &Recipe) -> Result<&str, RecipeError> {
-        let refused = |key: &str, text: &str| RecipeError::new(key, RecipeProblem::Other(text.to_owned()));
+    /// [`RecipeError`], with the key that needs a mesh, or with the target if it is not a file.
+    pub fn streamed_file(recipe: &Recipe) -> Result<&str, RecipeError<StreamProblem>> {
         let needs_mesh = [
             ("mask.vertices", recipe.mask.vertices.is_some()),
             ("promise.volume", recipe.promise.volume.is_some()),
@@ -79,21 +116,19 @@ impl PointFlow {
             ("output.frames", recipe.output.frames.is_some()),
         ];
         if let Some((key, _)) = needs_mesh.into_iter().find(|(_, is_asked)| *is_asked) {
-            return Err(refused(
-                key,
-                "needs a whole mesh, and a stream knows only points; remove it, or do not stream",
-            ));
+            return Err(RecipeError::new(key, StreamProblem::NeedsMesh));
         }
         let file = recipe.target.mesh.as_deref();
-        file.ok_or_else(|| refused("target", "is no file; a stream needs target.mesh, .ply or .npy"))
+        file.ok_or_else(|| RecipeError::new("target", StreamProblem::NoFile))
     }
 
-    /// Whether the strokes of `recipe` depend on the bounds of what they deform: regions do, and masks on exact flows.
+    /// Whether the strokes of `recipe` depend on the bounds of the points. Regions do, and so do
+    /// masks of exact flows.
     pub fn needs_bounds(recipe: &Recipe) -> bool {
         recipe.mask != Mask::default() || recipe.strokes.iter().any(|stroke| matches!(stroke, Stroke::Region(_)))
     }
 
-    /// `points` of the target's file where the recipe places them in the world.
+    /// `points` of the target's file in world coordinates.
     pub fn place(recipe: &Recipe, points: Vec<DVec3>) -> Vec<DVec3> {
         place(&recipe.target, points)
     }
@@ -108,9 +143,4 @@ impl PointFlow {
             field::AdvectError::Stamp { .. } => unreachable!("`new` refuses stamps"),
         })
     }
-}
-
-fn stamp_on_points(index: usize) -> RecipeError {
-    let text = "is a stamp, which presses into a surface, and points have none; give a mesh, or remove this stroke";
-    RecipeError::new(&format!("stroke.{index}"), RecipeProblem::Other(text.to_owned()))
 }

@@ -1,28 +1,39 @@
-//! The recipe, which is also the log of a session: a target, tools, and the strokes made with them.
+//! The recipe: a target, tools, and the strokes to apply. It is plain data, and the log of a
+//! session is a recipe too.
 
+mod defaults;
 mod deserialize;
 mod error;
 mod mask;
 mod names;
 pub(crate) mod pose;
+mod problem;
+mod profile;
 mod region;
 mod ring;
 pub(crate) mod rotation;
 mod shape;
 mod strip;
 mod stroke;
+mod suggestion;
 mod tagged;
+mod transform;
 mod tree;
 mod validate;
 
-use std::{collections::BTreeMap, fmt};
+use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use error::{Location, RecipeError, RecipeProblem};
+pub use error::{Location, RecipeError};
 pub use mask::{Mask, MirrorPlane, Pin, VertexWeights};
 pub use pose::{Bone, BoneKey, Pose};
+pub use problem::{
+    CombinationProblem, GeometryProblem, InvalidRecipe, NoSuchElement, NumberProblem, RecipeProblem, ReferenceProblem,
+    SkeletonProblem, StructureProblem, SyntaxProblem,
+};
+pub use profile::Profile;
 pub use region::{
     CapsuleRegion, HalfSpaceRegion, InnerRegion, Region, RegionMotion, RegionTurn, SphereRegion, ToolRegion,
 };
@@ -33,54 +44,56 @@ pub use shape::{
 };
 pub use strip::{Radius, SpinePoints, Strip, StripMode};
 pub use stroke::{Bend, Key, Move, Stamp, Stroke, Twist};
+pub use suggestion::Suggestion;
+pub use transform::Transform;
 pub use tree::Override;
 
-use rotation::no_rotation;
+use defaults::is_default;
 use tree::Node;
 
-/// What to deform, with which tools and strokes, how closely, and where to put the results.
+/// A deformation: the target, the tools and strokes, the accuracy, and the outputs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Recipe {
     /// Version of the recipe's format: 1.
     #[schemars(range(min = 1, max = 1))]
     pub recipe: u32,
-    /// What is deformed.
+    /// The mesh to deform.
     pub target: Target,
-    /// The tools by name.
+    /// Tools by name.
     #[serde(default, skip_serializing_if = "is_default")]
     pub tools: BTreeMap<String, Tool>,
-    /// The strokes in the order in which they are made.
+    /// Strokes, in the order in which they act.
     #[serde(default, rename = "stroke", skip_serializing_if = "is_default")]
     pub strokes: Vec<Stroke>,
     /// Size of the time steps.
     #[serde(default, skip_serializing_if = "is_default")]
     pub integrate: Integrate,
-    /// Where triangles are split.
+    /// Criteria for splitting triangles.
     #[serde(default, skip_serializing_if = "is_default")]
     pub refine: Refine,
-    /// What the written mesh is held to.
+    /// Properties that the written mesh must have.
     #[serde(default, skip_serializing_if = "is_default")]
     pub promise: Promise,
-    /// The final correction of the volume.
+    /// Final correction of the volume.
     #[serde(default, skip_serializing_if = "is_default")]
     pub volume: Volume,
-    /// What holds the strokes back.
+    /// Parts that stay fixed, and planes of symmetry.
     #[serde(default, skip_serializing_if = "is_default")]
     pub mask: Mask,
-    /// Where the results go.
+    /// Files to write.
     #[serde(default, skip_serializing_if = "is_default")]
     pub output: Output,
 }
 
-/// What is deformed: a mesh or a shape, and where it stands.
+/// The mesh to deform: a file or a generated shape, with its placement.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Target {
     /// Mesh file, relative to the recipe. Either this or `shape`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub mesh: Option<String>,
-    /// A shape made here. Either this or `mesh`.
+    /// Generated shape. Either this or `mesh`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub shape: Option<TargetShape>,
     /// Placement in the world.
@@ -88,73 +101,32 @@ pub struct Target {
     pub transform: Transform,
 }
 
-/// A similarity: scaled, then rotated, then translated.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Transform {
-    /// Factor, above zero.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub scale: f64,
-    /// Axis x, y, z and angle in degrees, right-handed.
-    pub rotate: [f64; 4],
-    /// Displacement, model units.
-    pub translate: [f64; 3],
-}
-
-impl Default for Transform {
-    fn default() -> Self {
-        Self { scale: 1.0, rotate: no_rotation(), translate: [0.0; 3] }
-    }
-}
-
-/// A shape with a support around it, in which its field fades to nothing.
+/// A solid with a support around it, in which its field fades to zero.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tool {
-    /// The solid that moves.
+    /// Solid that moves.
     pub shape: ToolShape,
-    /// How far beyond the surface the field reaches, model units.
+    /// Distance from the surface at which the field ends, model units.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub support: f64,
-    /// How the field fades.
+    /// Falloff of the field.
     #[serde(default)]
     pub profile: Profile,
-    /// How much of the free-form gauge is added to the vector potential, from 0 to 1. More makes the flow around an elongated tool
-    /// slower and its way shorter, but its grooves sharper, which takes more triangles.
+    /// Fraction of the free-form gauge that is added to the vector potential, from 0 to 1. A larger
+    /// value makes the flow around an elongated tool slower and shorter, but its grooves sharper,
+    /// which takes more triangles.
     #[serde(default, skip_serializing_if = "is_default")]
     #[schemars(range(min = 0, max = 1))]
     pub free_form: f64,
-}
-
-/// How a tool's field falls from one on the surface to zero where the support ends.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Profile {
-    /// Twice continuously differentiable; the inside of the tool moves rigidly.
-    #[default]
-    Quintic,
-    /// Three times continuously differentiable; the inside of the tool moves rigidly.
-    Septic,
-    /// The polynomial of von Funck's region fields; the inside of the tool moves rigidly.
-    Quartic,
-    /// Steep at the surface, so that material comes close to the tool; goes on into the tool without a kink.
-    Contact,
-    /// The quadratic of the 2008 thesis, with a kink at the surface.
-    Thesis,
-}
-
-impl fmt::Display for Profile {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
 }
 
 /// Size of the time steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Integrate {
-    /// Travel of the fastest point of the tool's surface in one step, as a fraction of the support or of half the tool's
-    /// shortest extent, whichever is less.
+    /// Distance that the fastest point of the tool's surface moves in one step, as a fraction of
+    /// the support or of half the tool's shortest extent, whichever is less.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
     pub step: f64,
 }
@@ -165,33 +137,37 @@ impl Default for Integrate {
     }
 }
 
-/// Where triangles are split so that flat facets follow the curved flow.
+/// Criteria for splitting triangles so that flat facets follow the curved flow.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Refine {
-    /// False leaves the triangles as they are.
+    /// False keeps the triangles unchanged.
     pub enabled: bool,
-    /// Refines until the estimated error of the volume is below this share of the volume.
+    /// Largest estimated error of the volume, as a fraction of the volume.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub volume: f64,
-    /// Farthest that an edge's image may lie from a straight line, as a fraction of the longest side of the target's bounds.
+    /// Largest distance of an edge's image from a straight line, as a fraction of the longest side
+    /// of the target's bounds.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub deviation: f64,
-    /// Longest edge of the deformed mesh, model units; without it, 1.5 times the longest edge of the target.
+    /// Longest edge of the deformed mesh, model units; by default 1.5 times the longest edge of the
+    /// target.
     #[serde(skip_serializing_if = "is_default")]
     pub max_edge: Option<f64>,
-    /// Refinement ends at this many triangles.
+    /// Largest number of triangles, at which refinement ends.
     pub max_triangles: usize,
 }
 
-/// What the written mesh is held to. Promises steer nothing: they are judged at the end.
+/// Properties that the written mesh must have. Promises do not influence the deformation: they are
+/// checked at the end.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Promise {
     /// Largest relative change of the volume.
     #[serde(skip_serializing_if = "is_default")]
     pub volume: Option<f64>,
-    /// True: the written mesh has no more self-intersecting triangles than the target.
+    /// Whether the written mesh must have at most as many self-intersecting triangles as the
+    /// target.
     #[serde(skip_serializing_if = "is_default")]
     pub no_new_self_intersections: bool,
 }
@@ -200,7 +176,8 @@ pub struct Promise {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Volume {
-    /// Moves the deformed vertices by the least that restores the volume exactly.
+    /// Whether to restore the volume exactly, by the smallest displacement of the deformed vertices
+    /// that does so.
     pub lock: bool,
 }
 
@@ -210,39 +187,41 @@ impl Default for Volume {
     }
 }
 
-/// Where the results go. Paths are relative to the recipe.
+/// Files to write. Paths are relative to the recipe.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
-    /// The deformed mesh; the extension tells the format.
+    /// Deformed mesh; the extension gives the format.
     #[serde(skip_serializing_if = "is_default")]
     pub mesh: Option<String>,
-    /// The report, JSON.
+    /// Report, JSON.
     #[serde(skip_serializing_if = "is_default")]
     pub report: Option<String>,
-    /// A picture of the target before and after, PNG.
+    /// Picture of the target before and after, PNG.
     #[serde(skip_serializing_if = "is_default")]
     pub preview: Option<String>,
-    /// Direction from the target to the eye of the preview, of any length; z is up. By default from the right, in front and above.
+    /// Direction from the target to the camera of the preview, of any length; z is up. By default
+    /// to the right, to the front and up.
     #[serde(skip_serializing_if = "is_default")]
     pub view: Option<[f64; 3]>,
-    /// The deformation as a sequence of meshes.
+    /// Deformation as a sequence of meshes.
     #[serde(skip_serializing_if = "is_default")]
     pub frames: Option<Frames>,
 }
 
-/// A sequence of meshes with the same triangles, from the target at rest to the finished mesh.
+/// Sequence of meshes with the same triangles, from the target at rest to the finished mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Frames {
-    /// How many, the first and the last included.
+    /// Number of meshes, including the first and the last.
     #[schemars(range(min = 2))]
     pub count: u32,
-    /// Folder that takes them, in the format of the output mesh and numbered from zero: `frame_0000.obj`.
+    /// Folder for the meshes, in the format of the output mesh and numbered from zero:
+    /// `frame_0000.obj`.
     pub directory: String,
 }
 
-/// How the text of a recipe is written.
+/// Text format of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// TOML 1.
@@ -252,17 +231,32 @@ pub enum Format {
 }
 
 impl Format {
-    /// JSON where `text` begins with a brace, TOML otherwise.
+    /// JSON if `text` begins with a brace, otherwise TOML.
+    ///
+    /// ```
+    /// use isochore_sculpt::recipe::Format;
+    ///
+    /// assert_eq!(Format::of_text(" { \"recipe\": 1 }"), Format::Json);
+    /// assert_eq!(Format::of_text("recipe = 1"), Format::Toml);
+    /// ```
     pub fn of_text(text: &str) -> Self {
         if text.trim_start().starts_with('{') { Self::Json } else { Self::Toml }
     }
 }
 
 impl Recipe {
-    /// Reads a recipe, lets `overrides` win over what it says, and [validates](Self::validate) it.
+    /// Parses a recipe, applies `overrides`, and [validates](Self::validate) the result.
     ///
     /// # Errors
-    /// The first thing found to be wrong, with its line.
+    /// The first problem, with its key and its line.
+    ///
+    /// ```
+    /// use isochore_sculpt::recipe::{Format, Recipe};
+    ///
+    /// let text = "recipe = 1\n[target]\nmish = 'column.obj'";
+    /// let error = Recipe::parse(text, Format::Toml, &[]).unwrap_err();
+    /// assert_eq!(error.to_string(), "line 3: target.mish: unknown key; did you mean `mesh`?");
+    /// ```
     pub fn parse(text: &str, format: Format, overrides: &[Override]) -> Result<Self, RecipeError> {
         let mut tree = match format {
             Format::Toml => Node::from_toml(text)?,
@@ -271,24 +265,30 @@ impl Recipe {
         for setting in overrides {
             tree.apply(setting)?;
         }
-        let recipe = Self::deserialize(&tree).and_then(|recipe| recipe.validate().map(|()| recipe));
-        recipe.map_err(|error| {
-            let location = tree.locate(&error.key);
-            error.at(location)
-        })
+        let recipe = Self::deserialize(&tree).map_err(|error| tree.located(error))?;
+        recipe.validate().map_err(|error| tree.located(error))?;
+        Ok(recipe)
     }
 
-    /// The recipe as TOML. [`parse`](Self::parse) gives back the same recipe.
+    /// The recipe as TOML, from which [`parse`](Self::parse) returns the same recipe.
+    ///
+    /// ```
+    /// use isochore_sculpt::recipe::{Format, Recipe, Stroke, Twist};
+    ///
+    /// let text = "recipe = 1\ntarget = { mesh = 'column.obj' }";
+    /// let mut recipe = Recipe::parse(text, Format::Toml, &[])?;
+    /// let twist = Twist { origin: [0.0; 3], axis: [0.0, 0.0, 1.0], degrees_per_unit: 30.0 };
+    /// recipe.strokes.push(Stroke::Twist(twist));
+    /// recipe.validate()?;
+    /// assert_eq!(Recipe::parse(&recipe.to_toml(), Format::Toml, &[])?, recipe);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("a recipe has only strings for keys")
     }
 
-    /// The recipe as JSON. [`parse`](Self::parse) gives back the same recipe.
+    /// The recipe as JSON, from which [`parse`](Self::parse) returns the same recipe.
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).expect("a recipe has only strings for keys")
     }
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }

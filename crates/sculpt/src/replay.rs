@@ -1,4 +1,4 @@
-//! Carrying out a recipe on loaded meshes or on bare points.
+//! Replaying a recipe on its target.
 
 use isochore_field as field;
 use isochore_mesh::{Cancelled, Monitor, TriMesh};
@@ -8,20 +8,44 @@ use crate::{
     scene::{Meshes, Scene, SceneError},
 };
 
-/// What became of the target.
+/// Result of [`replay`].
 #[derive(Debug, Clone)]
 pub struct Replay {
-    /// The target before, and everything else that the recipe describes.
+    /// The target before the strokes, and the other objects of the recipe.
     pub scene: Scene,
-    /// The deformed mesh and the account of how it came about.
+    /// The deformed mesh and its receipt.
     pub deformed: field::Deformed,
 }
 
-/// Deforms the target of `recipe`, whose mesh files are in `meshes` by [their names](Recipe::mesh_names), and whose curve files
-/// have been [put in](Recipe::inline_curve).
+/// Deforms the target of `recipe`.
+///
+/// `meshes` holds the mesh files of the recipe [by name](Recipe::mesh_names). Points must have
+/// [replaced](Recipe::inline_curve) its curve files.
 ///
 /// # Errors
-/// [`ReplayError`], naming the key of the recipe that cannot be followed.
+/// [`ReplayError`], with the key of the recipe at fault.
+///
+/// ```
+/// use isochore_mesh::{NoProgress, primitives};
+/// use isochore_sculpt::{Meshes, Recipe, recipe::Format, replay};
+///
+/// let text = r#"
+///     recipe = 1
+///     target = { mesh = "ball" }
+///     [[stroke]]
+///     kind = "twist"
+///     origin = [0, 0, 0]
+///     axis = [0, 0, 1]
+///     degrees_per_unit = 30.0
+/// "#;
+/// let recipe = Recipe::parse(text, Format::Toml, &[])?;
+/// let ball = primitives::icosphere(1.0, 3);
+/// let volume = ball.volume();
+/// let meshes = Meshes::from([("ball".to_owned(), ball.into())]);
+/// let replay = replay(&recipe, &meshes, &NoProgress)?;
+/// assert!((replay.deformed.mesh.volume() / volume - 1.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn replay(recipe: &Recipe, meshes: &Meshes, monitor: &dyn Monitor) -> Result<Replay, ReplayError> {
     let scene = Scene::build(recipe, meshes, monitor)?;
     let deformed = field::deform(&scene.target, &scene.strokes, &scene.options, monitor)?;
@@ -83,28 +107,31 @@ impl From<field::DeformError> for ReplayError {
 }
 
 impl Replay {
-    /// The mesh part of the way through the strokes, with the triangles of the finished one.
+    /// An image of the animation: the mesh after a part of the strokes, with the triangles of the
+    /// finished mesh.
     ///
-    /// Of `count` frames, at least two, the one with `index` 0 is at rest and the last is the finished mesh. Each stroke takes as
-    /// many frames as any other, and the volume lock, where the recipe asks for it, acts in each.
+    /// Of `count` images, at least two, the first (`index` 0) is the mesh at rest and the last is
+    /// the finished mesh. Every stroke takes the same number of images. The volume lock, if the
+    /// recipe enables it, acts in each image.
     ///
     /// # Errors
     /// [`ReplayError::Cancelled`] and [`ReplayError::Deform`].
     pub fn frame(&self, index: u32, count: u32, monitor: &dyn Monitor) -> Result<TriMesh, ReplayError> {
         if index >= count.saturating_sub(1) {
-            // Done again, the lock would aim at the volume of the split mesh at rest, which rounds differently.
+            // Computed again, the lock would restore the volume of the split mesh at rest, which
+            // rounds differently.
             return Ok(self.deformed.mesh.clone());
         }
         let strokes = &self.deformed.strokes;
         let time = strokes.len() as f64 * (f64::from(index) / f64::from(count - 1));
         let whole = (time as usize).min(strokes.len());
-        let mut so_far = strokes[..whole].to_vec();
+        let mut partial = strokes[..whole].to_vec();
         if let Some(stroke) = strokes.get(whole)
             && time > whole as f64
         {
-            so_far.push(stroke.truncated(time - whole as f64));
+            partial.push(stroke.truncated(time - whole as f64));
         }
         let options = field::DeformOptions { refine: None, lock: self.scene.options.lock };
-        Ok(field::deform(&self.deformed.rest, &so_far, &options, monitor)?.mesh)
+        Ok(field::deform(&self.deformed.rest, &partial, &options, monitor)?.mesh)
     }
 }

@@ -1,4 +1,4 @@
-//! The account of a run, as JSON.
+//! Reports of replays, written as JSON.
 
 use std::collections::BTreeMap;
 
@@ -18,101 +18,102 @@ const VOLUME: &str = "volume";
 /// Name of the promise on self-intersections.
 const NO_NEW_SELF_INTERSECTIONS: &str = "no_new_self_intersections";
 
-/// What a run did to its target, and what became of the promises.
+/// Measurements of a replay, and whether the promises hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
-    /// The target, placed in the world.
+    /// Target in world coordinates.
     pub before: Measures,
-    /// The written mesh, rounded as its format rounds.
+    /// Written mesh, with the rounding of its format.
     pub after: Measures,
-    /// Signed relative change of the volume on the written mesh; null for an open target.
+    /// Signed relative change of the volume, measured on the written mesh; null for an open target.
     pub volume_change: Option<f64>,
-    /// The same before the volume lock, on the mesh in memory; null for an open target.
+    /// Signed relative change of the volume before the volume lock, measured on the mesh in memory;
+    /// null for an open target.
     pub volume_change_before_lock: Option<f64>,
-    /// Farthest that the lock moved a vertex, model units; null where there was no lock.
+    /// Largest displacement of a vertex by the volume lock, model units; null without a lock.
     pub lock_max_shift: Option<f64>,
-    /// Farthest that a vertex moved, model units.
+    /// Largest displacement of a vertex, model units.
     pub max_displacement: f64,
-    /// Vertices, inserted ones included, that the strokes moved at all.
+    /// Vertices that the strokes moved, including inserted ones.
     pub moved_vertices: usize,
-    /// Vertices that refinement added.
+    /// Vertices that refinement inserted.
     pub inserted_vertices: usize,
-    /// The promises of the recipe, and whether they were kept.
+    /// Promises of the recipe by name, and whether they hold.
     pub promises: BTreeMap<String, bool>,
-    /// The strokes, in order.
+    /// Strokes in order.
     pub strokes: Vec<StrokeReport>,
-    /// Wall-clock time of the stages.
+    /// Wall-clock time of each stage.
     pub seconds: Seconds,
     /// Version of the program.
     pub version: String,
-    /// SHA-256 of the recipe's file as it was read, in hexadecimal digits.
+    /// SHA-256 of the recipe's file, in hexadecimal digits.
     pub recipe_sha256: String,
-    /// Settings that won over the recipe, `KEY=VALUE`.
+    /// Settings that replaced values of the recipe, `KEY=VALUE`.
     pub overrides: Vec<String>,
-    /// What the user should know beyond the numbers.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
-/// Facts about a mesh.
+/// Measurements of a mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Measures {
-    /// Vertices.
+    /// Number of vertices.
     pub vertices: usize,
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: usize,
-    /// True where every edge lies between two triangles that agree on which side is outside.
+    /// Whether every edge has two triangles with consistent orientation.
     pub closed: bool,
     /// Enclosed volume, cubic model units; null for an open mesh.
     pub volume: Option<f64>,
-    /// Area, square model units.
+    /// Surface area, square model units.
     pub area: f64,
     /// Bounding box, model units.
     pub bounds: Bounds,
-    /// Triangles that intersect another one.
+    /// Number of triangles that intersect another one.
     pub self_intersecting_triangles: usize,
-    /// Sum of their areas, square model units.
+    /// Total area of the self-intersecting triangles, square model units.
     pub self_intersecting_area: f64,
 }
 
-/// A bounding box, model units.
+/// Bounding box, model units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Bounds {
-    /// Smallest x, y and z.
+    /// Minimum x, y and z.
     pub min: [f64; 3],
-    /// Largest x, y and z.
+    /// Maximum x, y and z.
     pub max: [f64; 3],
 }
 
-/// What one stroke did.
+/// Measurements of one stroke.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StrokeReport {
-    /// Kind, as in the recipe.
+    /// Kind of the stroke, as in the recipe.
     pub kind: String,
-    /// Wall-clock time.
+    /// Wall-clock time, seconds.
     pub seconds: f64,
-    /// Evaluations of the field.
+    /// Number of evaluations of the field.
     pub evaluations: u64,
-    /// Vertices that it moved.
+    /// Number of vertices that the stroke moved.
     pub moved: usize,
-    /// Vertices that refinement added for it.
+    /// Number of vertices that refinement inserted for the stroke.
     pub inserted: usize,
-    /// Least Jacobian determinant of its flow map at some of the vertices that it moved; one where volumes are kept. Null where
-    /// it moved none, or is a stamp.
+    /// Smallest Jacobian determinant of the flow map, sampled at moved vertices; 1 for a map that
+    /// preserves volume. Null if the stroke moved no vertex or is a stamp.
     pub jacobian_min: Option<f64>,
-    /// The largest such determinant.
+    /// Largest Jacobian determinant of the flow map, sampled as for `jacobian_min`.
     pub jacobian_max: Option<f64>,
-    /// Signed relative change of the volume by it; null for an open target.
+    /// Signed relative change of the volume by the stroke; null for an open target.
     pub volume_change: Option<f64>,
 }
 
-/// Wall-clock seconds by stage.
+/// Wall-clock time of each stage, seconds.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Seconds {
     /// Reading the recipe and its meshes.
     pub read: f64,
-    /// Distance grids of tool meshes.
+    /// Sampling the distance grids of tool meshes.
     pub distance: f64,
-    /// Moving vertices along the strokes.
+    /// Advecting vertices along the strokes.
     pub advect: f64,
     /// Splitting triangles.
     pub refine: f64,
@@ -127,8 +128,17 @@ pub struct Seconds {
 impl Measures {
     /// Measures `mesh`.
     ///
+    /// ```
+    /// use isochore_mesh::{NoProgress, primitives};
+    /// use isochore_sculpt::Measures;
+    ///
+    /// let measures = Measures::of(&primitives::icosphere(1.0, 3), &NoProgress)?;
+    /// assert!(measures.closed && measures.self_intersecting_triangles == 0);
+    /// # Ok::<(), isochore_mesh::SelfIntersectionError>(())
+    /// ```
+    ///
     /// # Errors
-    /// [`SelfIntersectionError`], when the mesh cannot be searched or the monitor asks to stop.
+    /// [`SelfIntersectionError`], if the mesh cannot be searched or the monitor asks to stop.
     pub fn of(mesh: &TriMesh, monitor: &dyn Monitor) -> Result<Self, SelfIntersectionError> {
         let closed = ClosedMesh::new(mesh).ok();
         let bounds = mesh.bounds();
@@ -146,22 +156,23 @@ impl Measures {
     }
 }
 
-/// Where a report's recipe came from.
+/// Source of a report's recipe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source<'a> {
     /// Contents of the recipe's file.
     pub text: &'a [u8],
-    /// Settings that won over it, `KEY=VALUE`.
+    /// Settings that replaced its values, `KEY=VALUE`.
     pub overrides: &'a [String],
 }
 
 impl Report {
-    /// The account of `replay`, whose mesh stands in its file as `written`.
+    /// Reports on `replay`. `written` is its mesh as stored in the file, with the rounding of the
+    /// format.
     ///
-    /// The seconds for reading and writing are for the caller to fill in.
+    /// The caller fills in the seconds for reading and writing.
     ///
     /// # Errors
-    /// [`SelfIntersectionError`], when the mesh cannot be searched or the monitor asks to stop.
+    /// [`SelfIntersectionError`], if the mesh cannot be searched or the monitor asks to stop.
     pub fn new(
         recipe: &Recipe,
         source: Source<'_>,
@@ -193,7 +204,7 @@ impl Report {
             max_displacement: receipt.max_displacement,
             moved_vertices: receipt.moved_vertices,
             inserted_vertices: receipt.inserted_vertices,
-            promises: judge(&recipe.promise, volume_change, &before, &after),
+            promises: check_promises(&recipe.promise, volume_change, &before, &after),
             strokes: strokes.collect(),
             seconds: Seconds {
                 distance: replay.scene.distance_seconds,
@@ -212,9 +223,9 @@ impl Report {
         })
     }
 
-    /// The promises that were not kept.
+    /// Names of the promises that do not hold.
     pub fn missed_promises(&self) -> impl Iterator<Item = &str> {
-        self.promises.iter().filter(|(_, is_kept)| !**is_kept).map(|(name, _)| name.as_str())
+        self.promises.iter().filter(|(_, holds)| !**holds).map(|(name, _)| name.as_str())
     }
 }
 
@@ -223,20 +234,25 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The relative change from one volume to another; none where there is nothing to compare with.
+/// Relative change from one volume to another, or `None` if one is missing or the first is zero.
 fn relative_change(before: Option<f64>, after: Option<f64>) -> Option<f64> {
     let (before, after) = (before?, after?);
     (before != 0.0).then(|| (after - before) / before.abs())
 }
 
-fn judge(promise: &Promise, volume_change: Option<f64>, before: &Measures, after: &Measures) -> BTreeMap<String, bool> {
-    let volume = promise.volume.map(|most| {
-        // A mesh that lost its volume on the way has not kept it.
-        (VOLUME.to_owned(), volume_change.is_some_and(|change| change.abs() <= most))
+fn check_promises(
+    promise: &Promise,
+    volume_change: Option<f64>,
+    before: &Measures,
+    after: &Measures,
+) -> BTreeMap<String, bool> {
+    let volume = promise.volume.map(|limit| {
+        // An open mesh has no volume, so it breaks the promise.
+        (VOLUME.to_owned(), volume_change.is_some_and(|change| change.abs() <= limit))
     });
     let intersections = promise.no_new_self_intersections.then(|| {
-        let is_kept = after.self_intersecting_triangles <= before.self_intersecting_triangles;
-        (NO_NEW_SELF_INTERSECTIONS.to_owned(), is_kept)
+        let holds = after.self_intersecting_triangles <= before.self_intersecting_triangles;
+        (NO_NEW_SELF_INTERSECTIONS.to_owned(), holds)
     });
     volume.into_iter().chain(intersections).collect()
 }

@@ -5,6 +5,7 @@ mod key;
 pub(crate) mod mask;
 mod meshes;
 mod pose;
+mod problem;
 mod profile;
 mod rates;
 mod reach;
@@ -23,11 +24,12 @@ use web_time::Instant;
 
 pub use error::{BuildToolError, SceneError};
 pub use meshes::Meshes;
+pub use problem::{MaskProblem, SceneProblem, ShapeProblem};
 pub use tool::build_tool;
 
 pub(crate) use target::place;
 
-use crate::recipe::{Mask, Recipe, RecipeError, RecipeProblem};
+use crate::recipe::{Mask, Recipe, RecipeError};
 use stroke::StrokeBuilder;
 use tool::ToolBuilder;
 
@@ -47,10 +49,22 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Builds the objects of `recipe`. `meshes` holds its mesh files, [by name](Recipe::mesh_names).
+    /// Builds the objects of `recipe`. `meshes` holds its mesh files, [by
+    /// name](Recipe::mesh_names).
     ///
     /// # Errors
     /// [`SceneError`], with the key of the recipe at fault.
+    ///
+    /// ```
+    /// use isochore_mesh::NoProgress;
+    /// use isochore_sculpt::{Meshes, Recipe, Scene, recipe::Format};
+    ///
+    /// let text = "recipe = 1\ntarget = { shape = { kind = 'icosphere', radius = 1, subdivisions = 2 } }";
+    /// let recipe = Recipe::parse(text, Format::Toml, &[])?;
+    /// let scene = Scene::build(&recipe, &Meshes::new(), &NoProgress)?;
+    /// assert_eq!(scene.target.triangles.len(), 20 * 4 * 4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn build(recipe: &Recipe, meshes: &Meshes, monitor: &dyn Monitor) -> Result<Self, SceneError> {
         recipe.validate()?;
         let target = target::build(&recipe.target, meshes)?;
@@ -70,7 +84,8 @@ impl Scene {
         })
     }
 
-    /// Builds only the strokes of `recipe`, for points in `bounds` that do not form a mesh, and returns them with warnings.
+    /// Builds only the strokes of `recipe`, for points in `bounds` that do not form a mesh, and
+    /// returns them with warnings.
     ///
     /// `meshes` needs the target only if the mask has a weight for each vertex.
     ///
@@ -117,7 +132,7 @@ fn build_strokes(
 }
 
 /// Refuses a promise about the volume of a target without one.
-fn check_volume_promise(recipe: &Recipe, target: &TriMesh) -> Result<(), RecipeError> {
+fn check_volume_promise(recipe: &Recipe, target: &TriMesh) -> Result<(), RecipeError<SceneProblem>> {
     if recipe.promise.volume.is_none() {
         return Ok(());
     }
@@ -126,6 +141,5 @@ fn check_volume_promise(recipe: &Recipe, target: &TriMesh) -> Result<(), RecipeE
         Ok(_) => "it is zero".to_owned(),
         Err(defect) => defect.to_string(),
     };
-    let text = format!("the target encloses no volume ({defect}); close it, or remove this promise");
-    Err(RecipeError::new("promise.volume", RecipeProblem::Other(text)))
+    Err(RecipeError::new("promise.volume", SceneProblem::NoVolume(defect)))
 }

@@ -1,20 +1,25 @@
-//! JSON schemas of what is read and written, made from the types.
+//! JSON schemas of recipes and reports, generated from the types.
 
 use schemars::{Schema, schema_for};
 
 use crate::{Recipe, Report, StreamReport};
 
-/// The schema of recipes, for TOML and JSON alike.
+/// Schema of recipes, for both TOML and JSON.
+///
+/// ```
+/// let schema = isochore_sculpt::schema::recipe();
+/// assert!(schema.get("properties").is_some());
+/// ```
 pub fn recipe() -> Schema {
     schema_for!(Recipe)
 }
 
-/// The schema of reports.
+/// Schema of reports.
 pub fn report() -> Schema {
     schema_for!(Report)
 }
 
-/// The schema of reports on streams of points.
+/// Schema of reports of streams of points.
 pub fn stream_report() -> Schema {
     schema_for!(StreamReport)
 }

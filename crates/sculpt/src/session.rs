@@ -87,7 +87,7 @@ pub use tool::SessionTool;
 pub use volume::MovedVolume;
 
 use crate::{
-    recipe::{Integrate, Mask, RecipeError},
+    recipe::{Integrate, InvalidRecipe, Mask, RecipeError},
     scene,
 };
 use history::Steps;
@@ -269,7 +269,7 @@ impl Session {
 }
 
 /// Rejects options that the log could not read back.
-fn check(options: &SessionOptions) -> Result<(), RecipeError> {
+fn check(options: &SessionOptions) -> Result<(), RecipeError<InvalidRecipe>> {
     options.target.validate().map_err(|error| error.inside("target"))?;
     Integrate { step: options.step }.validate().map_err(|error| error.inside("integrate"))?;
     options.mask.validate().map_err(|error| error.inside("mask"))

@@ -1,4 +1,4 @@
-//! The account of points that were deformed chunk by chunk, as JSON.
+//! Reports of streams of points, written as JSON.
 
 use glam::DVec3;
 use isochore_mesh::Aabb;
@@ -7,48 +7,49 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Bounds, Recipe, Source, report::sha256};
 
-/// What a stream did to its points. A surface it does not know, and so tells of no volume.
+/// Measurements of a stream of points. Points have no surface and no volume.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StreamReport {
-    /// Points read and written.
+    /// Number of points read and written.
     pub points: u64,
-    /// Box of the points placed in the world, model units; null where there are none.
+    /// Bounding box of the points in world coordinates before the strokes, model units; null
+    /// without points.
     pub bounds_before: Option<Bounds>,
-    /// Box of the points as carried, model units.
+    /// Bounding box of the deformed points, model units; null without points.
     pub bounds_after: Option<Bounds>,
-    /// Points that the strokes moved at all.
+    /// Number of points that the strokes moved.
     pub moved_points: u64,
-    /// Farthest that a point moved, model units.
+    /// Largest displacement of a point, model units.
     pub max_displacement: f64,
     /// Kinds of the strokes, in order.
     pub strokes: Vec<String>,
-    /// Wall-clock time of the stages.
+    /// Wall-clock time of each stage.
     pub seconds: StreamSeconds,
     /// Version of the program.
     pub version: String,
-    /// SHA-256 of the recipe's file as it was read, in hexadecimal digits.
+    /// SHA-256 of the recipe's file, in hexadecimal digits.
     pub recipe_sha256: String,
-    /// Settings that won over the recipe, `KEY=VALUE`.
+    /// Settings that replaced values of the recipe, `KEY=VALUE`.
     pub overrides: Vec<String>,
-    /// What the user should know beyond the numbers.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
-/// Wall-clock seconds by stage.
+/// Wall-clock time of each stage, seconds.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StreamSeconds {
-    /// Reading the recipe, the meshes of tools, and the distance grids of those.
+    /// Reading the recipe and the meshes of tools, and sampling their distance grids.
     pub prepare: f64,
-    /// Reading points, the pass for their bounds included where one is needed.
+    /// Reading points, including the pass for their bounds if one is needed.
     pub read: f64,
-    /// Moving points along the strokes.
+    /// Advecting points along the strokes.
     pub advect: f64,
     /// Writing points.
     pub write: f64,
 }
 
 impl StreamReport {
-    /// The account of a stream that has not begun yet.
+    /// A report of a stream that has not started.
     pub fn new(recipe: &Recipe, source: Source<'_>, warnings: Vec<String>) -> Self {
         Self {
             points: 0,
@@ -65,7 +66,7 @@ impl StreamReport {
         }
     }
 
-    /// Adds a chunk of points, placed in the world and carried.
+    /// Adds a chunk of points, in world coordinates before and after the strokes.
     pub fn add(&mut self, before: &[DVec3], after: &[DVec3]) {
         let bits = |point: &DVec3| point.to_array().map(f64::to_bits);
         self.points += before.len() as u64;

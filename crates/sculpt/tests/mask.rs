@@ -91,7 +91,7 @@ fn points_move_as_vertices_do_and_need_the_target() {
 fn rates_that_refinement_cannot_follow_are_refused() {
     let refined = |degrees: &str| error(&["mask={}", "refine.enabled=true", degrees]);
     // The corners of the bounds are √3 from the origin: a shear of 2 · 3 a radian.
-    let words = "stroke.1.degrees_per_unit2: is 1000, which winds the target up";
+    let words = "stroke.1.degrees_per_unit2: is 1000, which winds the target up more finely";
     assert!(refined("stroke.1.degrees_per_unit2=1000").contains(words));
     let bare = recipe(&["mask={}", "stroke.1.degrees_per_unit2=1000"]);
     assert!(replay(&bare, &meshes(), &NoProgress).is_ok());
@@ -108,11 +108,11 @@ fn what_is_wrong_with_a_mask_is_named() {
             "mask.mirror: mirror planes 0 and 1, counted from 0, are not perpendicular",
         ),
         (&["mask.mirror.0.normal=[0,1,0]"], "stroke.1: the mirror image of the motion undoes it"),
-        (&["mask.fade=1"], "mask.fade: is how the hold of `vertices` fades"),
+        (&["mask.fade=1"], "mask.fade: sets how the weights of `vertices` fade"),
         (&["mask.vertices=[0,1,2]"], "mask.vertices.2: is 2; give 1 or less"),
         (&["mask.vertices=[0,1,'a']"], "mask.vertices.2: "),
         (&["mask.vertices=[0,1]"], "mask.vertices: there are 2 weights for 642 vertices"),
-        (&["mask.vertices=7"], "mask.vertices: 7 stands where the name of a file or a list of numbers is expected"),
+        (&["mask.vertices=7"], "mask.vertices: expected the name of a file or a list of numbers, found 7"),
         (&["mask.vertices=a.csv"], "mask.vertices: the file `a.csv` was not loaded"),
         (&["mask.pin=[]"], "unknown key; did you mean `pins`?"),
         (&["integrate.step=1.5"], "integrate.step: is 1.5; give 1 or less"),

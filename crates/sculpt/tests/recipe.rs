@@ -102,7 +102,7 @@ fn errors_name_line_key_and_remedy() {
         (
             "radius = 0.4",
             "radius = \"big\"",
-            "line 8: tools.ball.shape.radius: the text \"big\" stands where a number is expected",
+            "line 8: tools.ball.shape.radius: expected a number, found the text \"big\"",
         ),
         ("radius = 0.4", "raduis = 0.4", "line 8: tools.ball.shape.raduis: unknown key; did you mean `radius`?"),
         (", radius = 0.4", "", "line 8: tools.ball.shape.radius: missing; add it"),
@@ -110,8 +110,8 @@ fn errors_name_line_key_and_remedy() {
         ("rounding = 0.1", "rounding = 2", "line 18: tools.a.b.shape.rounding: is 2, more than"),
         ("tool = \"ball\"", "tool = \"bal\"", "line 22: stroke.0.tool: there is no tool `bal`; did you mean `ball`?"),
         ("{ at = [0, 0, 1.8] }, ", "", "line 23: stroke.0.keys: has 1 poses; a motion needs at least 2"),
-        ("30.0]", "180]", "line 23: stroke.0.keys.1.rotate: turns the tool by exactly 180 degrees"),
-        ("at = [0, 0, 1.8]", "at = [0, 0]", "line 23: stroke.0.keys.0.at: has 2 entries where 3 are expected"),
+        ("30.0]", "180]", "line 23: stroke.0.keys.1.rotate: rotates by exactly 180 degrees"),
+        ("at = [0, 0, 1.8]", "at = [0, 0]", "line 23: stroke.0.keys.0.at: expected 3 entries, found 2"),
         (
             "axis = [0, 0, 1]\ndegrees_per_unit ",
             "axis = [0, 0, 0]\ndegrees_per_unit ",
@@ -126,7 +126,7 @@ fn errors_name_line_key_and_remedy() {
         (
             "kind = \"bend\"",
             "kind = \"quux\"",
-            "line 32: stroke.2.kind: unknown value `quux`; known here: move, twist, bend, stamp, strip, ring, pose, region",
+            "line 32: stroke.2.kind: unknown value `quux`; valid choices: move, twist, bend, stamp, strip, ring, pose, region",
         ),
         ("[integrate]", "[intergrate]", "line 37: intergrate: unknown key; did you mean `integrate`?"),
         ("scale = 2.0", "scale = 0", "line 5: target.transform.scale: is 0; give a number above 0"),
@@ -141,10 +141,10 @@ fn errors_name_line_key_and_remedy() {
             "shape = { kind = \"icosphere\", radius = 1, subdivisions = 14 }",
             "line 4: target.shape.subdivisions: asks for 5368709120 triangles, more than",
         ),
-        ("recipe = 1", "recipe = 2", "line 1: recipe: version 2 is not known"),
+        ("recipe = 1", "recipe = 2", "line 1: recipe: unknown version 2"),
         ("recipe = 1", "", "recipe: missing; add it"),
         ("step = 0.25", "step = ", "line 38: "),
-        ("count = 24", "count = -1", "line 54: output.frames.count: -1 stands where a whole number is expected"),
+        ("count = 24", "count = -1", "line 54: output.frames.count: expected a whole number, found -1"),
     ];
     for (from, to, expected) in cases {
         let text = error_of(from, to).to_string();
@@ -195,7 +195,7 @@ fn overrides_win_and_are_typed() {
         "--set tools.ball.suport=1: tools.ball.suport: unknown key; did you mean `support`?"
     );
     assert!(message("stroke.7.tool=ball").contains("the list has 3"), "{}", message("stroke.7.tool=ball"));
-    assert!(message("refine.enabled=flase").contains("the text \"flase\" stands where a boolean is expected"));
+    assert!(message("refine.enabled=flase").contains("expected a boolean, found the text \"flase\""));
     assert!(Override::parse("refine.enabled").is_err());
     assert!(Override::parse("refine..enabled=true").is_err());
     assert!(Override::parse("refine.volume=[1").is_err());

@@ -75,11 +75,7 @@ fn writing_and_reading_back_is_the_identity() {
 fn errors_name_line_key_and_remedy() {
     let spine = "spine = [[-2, 0, 0.9], [0, 0, 0.8], [2, 0, 0.9]]";
     for (from, to, words) in [
-        (
-            "radius = 0.2\n",
-            "",
-            "stroke.0: says nothing of what is about the spine; add one of radius, section and tool",
-        ),
+        ("radius = 0.2\n", "", "stroke.0: has no cross-section; add one of radius, section and tool"),
         (
             "radius = 0.2\n",
             "radius = 0.2\ntool = \"ball\"\n",
@@ -87,36 +83,36 @@ fn errors_name_line_key_and_remedy() {
         ),
         ("radius = 0.2\n", "radius = -1\n", "line 10: stroke.0.radius: is -1; give a number above 0"),
         ("radius = 0.2\n", "radius = [0.2, 0]\n", "line 10: stroke.0.radius.1: is 0; give a number above 0"),
-        ("radius = 0.2\n", "radius = []\n", "line 10: stroke.0.radius: is 0; give at least 1"),
+        ("radius = 0.2\n", "radius = []\n", "line 10: stroke.0.radius: has 0 entries; give at least 1"),
         (
             "radius = 0.2\n",
             "radius = \"a\"\n",
-            "line 10: stroke.0.radius: the text \"a\" stands where a number or a list of",
+            "line 10: stroke.0.radius: expected a number or a list of numbers, found the text \"a\"",
         ),
         ("support = 0.3\n", "", "stroke.0.support: missing; add it"),
         ("\"along\"", "\"aside\"", "line 8: stroke.0.mode: unknown value `aside`"),
-        (spine, "spine = [[0, 0, 0]]", "line 9: stroke.0.spine: is 1; give at least 2"),
-        (spine, "spine = [[0, 0, 0], [1, 0]]", "line 9: stroke.0.spine.1: has 2 entries where 3 are expected"),
+        (spine, "spine = [[0, 0, 0]]", "line 9: stroke.0.spine: has 1 entries; give at least 2"),
+        (spine, "spine = [[0, 0, 0], [1, 0]]", "line 9: stroke.0.spine.1: expected 3 entries, found 2"),
         (spine, "spine = [[0, 0, 0], [nan, 0, 1]]", "line 9: stroke.0.spine.1: is NaN; give a finite number"),
-        (
-            spine,
-            "spine = 3",
-            "line 9: stroke.0.spine: 3 stands where a list of points or the name of a file is expected",
-        ),
+        (spine, "spine = 3", "line 9: stroke.0.spine: expected a list of points or the name of a file, found 3"),
         (
             "distance = 0.2",
             "distance = 0.2\ndirection = [0, 0, 1]",
-            "stroke.0.direction: is for mode = \"across\"; remove it",
+            "stroke.0.direction: applies only to mode = \"across\"; remove it",
         ),
         ("direction = [0, 0, 1]\n", "", "stroke.1.direction: missing; add it"),
-        ("spine_end = [[-2, 0.4, 0], ", "spine_end = [", "stroke.1.spine_end: has 2 entries where 3 are expected"),
-        ("\"septic\"", "\"thesis\"", "stroke.1.profile: `thesis` is kinked on the surface"),
+        (
+            "spine_end = [[-2, 0.4, 0], ",
+            "spine_end = [",
+            "stroke.1.spine_end: has 2 points, but `spine` has 3; give as many",
+        ),
+        ("\"septic\"", "\"thesis\"", "stroke.1.profile: `thesis` has a kink at the surface"),
         ("tool = \"ball\"", "tool = \"bell\"", "stroke.2.tool: there is no tool `bell`; did you mean `ball`?"),
-        ("tool = \"ball\"", "tool = \"ball\"\nsupport = 1", "stroke.2.support: is that of the tool; remove it here"),
+        ("tool = \"ball\"", "tool = \"ball\"\nsupport = 1", "stroke.2.support: is determined by the tool; remove it"),
         (
             "tool = \"ball\"",
             "tool = \"ball\"\nreference = [0, 0, 1]",
-            "stroke.2.reference: is for strips with a section",
+            "stroke.2.reference: applies only to strips with a section",
         ),
         ("axis = [0, 0, 2]", "axis = [0, 0, 0]", "stroke.4.axis: has an axis of length zero"),
     ] {

@@ -1,18 +1,22 @@
-//! Recipe types out of the tree, with the path of whatever is wrong.
+//! Deserializes recipes from a tree. Errors have the path of the key.
 
 use serde::de::{
     self, DeserializeSeed, Deserializer, Error, Expected, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor,
 };
 
 use super::{
-    error::{RecipeError, RecipeProblem, nearest},
+    error::RecipeError,
+    problem::StructureProblem,
+    suggestion::Suggestion,
     tagged::KIND,
     tree::{Entry, Node, Value},
 };
 
-impl de::Error for RecipeError {
+type StructureError = RecipeError<StructureProblem>;
+
+impl de::Error for StructureError {
     fn custom<T: std::fmt::Display>(message: T) -> Self {
-        Self::new("", RecipeProblem::Other(message.to_string()))
+        Self::new("", StructureProblem::Other(message.to_string()))
     }
 
     fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
@@ -31,7 +35,7 @@ impl de::Error for RecipeError {
             Unexpected::Signed(number) => format!("{number}"),
             other => other.to_string(),
         };
-        Self::new("", RecipeProblem::WrongType { found, expected })
+        Self::new("", StructureProblem::WrongType { found, expected })
     }
 
     fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
@@ -39,29 +43,23 @@ impl de::Error for RecipeError {
     }
 
     fn unknown_field(field: &str, known: &'static [&'static str]) -> Self {
-        // The tag of an enum is known wherever it is read, but is no field of the type that follows.
-        let nearest = nearest(field, known.iter().copied());
-        Self::new(
-            field,
-            RecipeProblem::UnknownKey { nearest, known: known.iter().map(|&key| key.to_owned()).collect() },
-        )
+        Self::new(field, StructureProblem::UnknownKey(Suggestion::new(field, known.iter().copied())))
     }
 
     fn unknown_variant(variant: &str, known: &'static [&'static str]) -> Self {
-        let nearest = nearest(variant, known.iter().copied());
-        let known = known.iter().map(|&name| name.to_owned()).collect();
-        Self::new("", RecipeProblem::UnknownValue { found: variant.to_owned(), nearest, known })
+        let suggestion = Suggestion::new(variant, known.iter().copied());
+        Self::new("", StructureProblem::UnknownValue { found: variant.to_owned(), suggestion })
     }
 
     fn missing_field(field: &'static str) -> Self {
-        Self::new(field, RecipeProblem::Missing)
+        Self::new(field, StructureProblem::Missing)
     }
 }
 
 impl<'de> Deserializer<'de> for &'de Node {
-    type Error = RecipeError;
+    type Error = StructureError;
 
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, RecipeError> {
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, StructureError> {
         match &self.value {
             Value::Null => visitor.visit_unit(),
             Value::Boolean(value) => visitor.visit_bool(*value),
@@ -70,14 +68,14 @@ impl<'de> Deserializer<'de> for &'de Node {
             Value::String(value) => visitor.visit_borrowed_str(value),
             Value::Array(items) => visitor.visit_seq(Elements { items, next: 0 }),
             Value::Table(entries) => {
-                // The tag goes first, so that what follows can be read as the type that it names.
+                // The tag goes first, because it gives the type of the other keys.
                 let (tag, rest): (Vec<_>, Vec<_>) = entries.iter().partition(|entry| entry.key == KIND);
                 visitor.visit_map(Entries { entries: tag.into_iter().chain(rest), value: None })
             }
         }
     }
 
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, RecipeError> {
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, StructureError> {
         match self.value {
             Value::Null => visitor.visit_none(),
             _ => visitor.visit_some(self),
@@ -89,7 +87,7 @@ impl<'de> Deserializer<'de> for &'de Node {
         _name: &'static str,
         _variants: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, RecipeError> {
+    ) -> Result<V::Value, StructureError> {
         match &self.value {
             Value::String(value) => visitor.visit_enum(value.as_str().into_deserializer()),
             _ => self.deserialize_any(visitor),
@@ -100,14 +98,14 @@ impl<'de> Deserializer<'de> for &'de Node {
         self,
         _name: &'static str,
         visitor: V,
-    ) -> Result<V::Value, RecipeError> {
+    ) -> Result<V::Value, StructureError> {
         visitor.visit_newtype_struct(self)
     }
 
-    fn deserialize_tuple<V: Visitor<'de>>(self, expected: usize, visitor: V) -> Result<V::Value, RecipeError> {
+    fn deserialize_tuple<V: Visitor<'de>>(self, expected: usize, visitor: V) -> Result<V::Value, StructureError> {
         match &self.value {
             Value::Array(items) if items.len() != expected => {
-                Err(RecipeError::new("", RecipeProblem::WrongLength { found: items.len(), expected }))
+                Err(RecipeError::new("", StructureProblem::WrongLength { found: items.len(), expected }))
             }
             _ => self.deserialize_any(visitor),
         }
@@ -125,9 +123,9 @@ struct Elements<'de> {
 }
 
 impl<'de> SeqAccess<'de> for Elements<'de> {
-    type Error = RecipeError;
+    type Error = StructureError;
 
-    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, RecipeError> {
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, StructureError> {
         let Some(item) = self.items.get(self.next) else { return Ok(None) };
         let index = self.next;
         self.next += 1;
@@ -141,15 +139,15 @@ struct Entries<'de, I> {
 }
 
 impl<'de, I: Iterator<Item = &'de Entry>> MapAccess<'de> for Entries<'de, I> {
-    type Error = RecipeError;
+    type Error = StructureError;
 
-    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, RecipeError> {
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, StructureError> {
         self.value = self.entries.next();
         self.value.map(|entry| seed.deserialize(entry.key.as_str().into_deserializer())).transpose()
     }
 
-    fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, RecipeError> {
-        let entry = self.value.take().ok_or_else(|| RecipeError::custom("a value was asked for before its key"))?;
+    fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, StructureError> {
+        let entry = self.value.take().ok_or_else(|| StructureError::custom("a value was asked for before its key"))?;
         seed.deserialize(&entry.node).map_err(|error| error.inside(&entry.key))
     }
 }

@@ -1,4 +1,4 @@
-//! What holds the deformation back.
+//! Masks: fixed parts and planes of symmetry.
 
 use std::fmt;
 
@@ -6,23 +6,23 @@ use schemars::JsonSchema;
 use serde::de::{Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
-/// What is held, and planes of symmetry. Both act on the vector potential of every stroke, never on its velocity, so that the
-/// volume is kept all the same; they stand where the target stands at rest.
+/// Fixed parts and planes of symmetry, placed relative to the target at rest. They act on the
+/// vector potential of every stroke, not on its velocity, so the volume is still preserved.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Mask {
     /// Balls that do not move.
-    #[serde(skip_serializing_if = "super::is_default")]
+    #[serde(skip_serializing_if = "super::defaults::is_default")]
     pub pins: Vec<Pin>,
-    /// Planes that the strokes are made symmetric about, perpendicular to each other.
-    #[serde(skip_serializing_if = "super::is_default")]
+    /// Planes of symmetry of the strokes, perpendicular to each other.
+    #[serde(skip_serializing_if = "super::defaults::is_default")]
     pub mirror: Vec<MirrorPlane>,
-    /// How much each vertex of the target is held.
-    #[serde(skip_serializing_if = "super::is_default")]
+    /// Weight of each vertex of the target.
+    #[serde(skip_serializing_if = "super::defaults::is_default")]
     pub vertices: Option<VertexWeights>,
-    /// Length, model units, over which the vertices' hold fades in space; without it a tenth of the longest side of the target's
-    /// bounds, or four mean edges where that is more.
-    #[serde(skip_serializing_if = "super::is_default")]
+    /// Distance over which the weights of vertices fade in space, model units. By default a tenth
+    /// of the longest side of the target's bounds, or four mean edge lengths if they are longer.
+    #[serde(skip_serializing_if = "super::defaults::is_default")]
     pub fade: Option<f64>,
 }
 
@@ -32,10 +32,10 @@ pub struct Mask {
 pub struct Pin {
     /// Center, model units.
     pub center: [f64; 3],
-    /// Radius, model units; zero holds a point.
+    /// Radius, model units; zero fixes a point.
     #[schemars(range(min = 0.0))]
     pub radius: f64,
-    /// How far beyond the ball the flow is held back, model units.
+    /// Distance from the ball over which the flow is reduced, model units.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub support: f64,
 }
@@ -44,19 +44,19 @@ pub struct Pin {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MirrorPlane {
-    /// A point of the plane.
+    /// Point of the plane, model units.
     pub point: [f64; 3],
     /// Normal of the plane, of any length.
     pub normal: [f64; 3],
 }
 
-/// A weight for each vertex of the target in its order, from 0, free, to 1, held.
+/// One weight for each vertex of the target, from 0 (free) to 1 (fixed).
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum VertexWeights {
-    /// CSV file with one number a row, relative to the recipe.
+    /// CSV file with one number per row, relative to the recipe.
     File(String),
-    /// The numbers themselves.
+    /// Numbers in the order of the vertices.
     Values(Vec<f64>),
 }
 
@@ -66,7 +66,7 @@ impl Default for VertexWeights {
     }
 }
 
-// Serde's untagged enums forget which element of a list was wrong.
+// Implemented by hand: serde's untagged enums do not report which element of a list is wrong.
 impl<'de> Deserialize<'de> for VertexWeights {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct WeightsVisitor;

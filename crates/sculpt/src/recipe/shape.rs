@@ -1,19 +1,19 @@
-//! The shapes that targets and tools can have.
+//! Shapes of targets and tools.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Transform, tagged::tagged};
+use super::{tagged::tagged, transform::Transform};
 
-/// A target that the recipe makes itself, centered on the origin.
+/// Generated target, centered on the origin.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum TargetShape {
-    /// An icosahedron subdivided towards the sphere: triangles of nearly equal size.
+    /// Icosahedron subdivided towards a sphere, with triangles of nearly equal size.
     Icosphere(Icosphere),
-    /// A box with a regular grid on every face.
+    /// Box with a regular grid on every face.
     Box(BoxMesh),
-    /// A sphere with poles on the z axis, cut along meridians and parallels.
+    /// Sphere with poles on the z axis, divided along meridians and parallels.
     Sphere(SphereMesh),
 }
 
@@ -26,7 +26,7 @@ pub struct Icosphere {
     /// Distance of the vertices from the origin, model units.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
-    /// How often each triangle is split into four; 20 · 4ⁿ triangles.
+    /// Number n of times that each triangle is split into four; 20 · 4ⁿ triangles.
     pub subdivisions: u32,
 }
 
@@ -47,25 +47,25 @@ pub struct SphereMesh {
     /// Distance of the vertices from the origin, model units.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
-    /// Cells round the equator, and from pole to pole.
+    /// Cells around the equator, and from pole to pole.
     pub segments: [u32; 2],
 }
 
-/// The solid that a tool's field surrounds, in the tool's own coordinates.
+/// Solid that a tool's field surrounds, in tool coordinates.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum ToolShape {
-    /// A ball about the origin.
+    /// Ball around the origin.
     Sphere(Sphere),
-    /// All points near a segment on the z axis.
+    /// All points near a segment of the z axis.
     Capsule(Capsule),
-    /// A box about the origin, its edges rounded on request.
+    /// Box around the origin, with optional rounded edges.
     Box(RoundedBox),
-    /// A ring about the z axis.
+    /// Torus around the z axis.
     Torus(Torus),
-    /// An ellipsoid about the origin.
+    /// Ellipsoid around the origin.
     Ellipsoid(Ellipsoid),
-    /// The inside of a mesh.
+    /// Inside of a mesh.
     Mesh(MeshTool),
     /// A shape of the program that made the recipe. A recipe cannot describe it; the program supplies the tool to replay it.
     Host(HostShape),
@@ -105,10 +105,10 @@ pub struct Capsule {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RoundedBox {
-    /// Half the edge lengths, rounding included, model units.
+    /// Half the edge lengths including the rounding, model units.
     pub half_extents: [f64; 3],
     /// Radius of the edges, model units.
-    #[serde(default, skip_serializing_if = "super::is_default")]
+    #[serde(default, skip_serializing_if = "super::defaults::is_default")]
     pub rounding: f64,
 }
 
@@ -138,12 +138,12 @@ pub struct Ellipsoid {
 pub struct MeshTool {
     /// Mesh file, relative to the recipe.
     pub mesh: String,
-    /// Cells of the distance grid along the longest side of the mesh, padding not counted. More are taken where a cell would be
-    /// longer than a sixth of the support.
+    /// Cells of the distance grid along the longest side of the mesh, without padding. The grid is
+    /// finer if a cell would be longer than a sixth of the support.
     #[schemars(range(min = 4, max = 1024))]
     pub resolution: u32,
-    /// Placement of the mesh in the tool's coordinates.
-    #[serde(default, skip_serializing_if = "super::is_default")]
+    /// Placement of the mesh in tool coordinates.
+    #[serde(default, skip_serializing_if = "super::defaults::is_default")]
     pub transform: Transform,
 }
 

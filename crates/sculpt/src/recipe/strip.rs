@@ -1,4 +1,4 @@
-//! Strips about a spine.
+//! Strips around a spine.
 
 use std::fmt;
 
@@ -8,88 +8,85 @@ use serde::{
     de::{Error, SeqAccess, Visitor, value::SeqAccessDeserializer},
 };
 
-use super::{
-    Profile,
-    error::RecipeProblem,
-    is_default,
-    ring::smooth_profile,
-    validate::{Check, all_finite, direction, fail, finite, positive},
-};
+use super::{defaults::is_default, profile::Profile};
 
 /// See [`Stroke::Strip`](super::Stroke::Strip).
 ///
-/// The solid about the spine is given by one of `radius`, `section` and `tool`.
+/// One of `radius`, `section` and `tool` gives the solid around the spine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Strip {
-    /// Which way the material is carried.
+    /// Direction of the motion.
     pub mode: StripMode,
-    /// The spine, at least two points; a smooth curve goes through them. Or the name of a file of them, relative to the recipe:
-    /// three columns, separated by commas.
+    /// Points of the spine, at least two, through which a smooth curve passes; or the name of a CSV
+    /// file with three columns, relative to the recipe.
     pub spine: SpinePoints,
-    /// The spine at the end of the stroke, as many points; each moves there straight. What it travels across by `distance` comes
-    /// on top.
+    /// Spine at the end of the stroke, with as many points; each moves along a straight line. The
+    /// travel by `distance` is added to it.
     #[serde(default, skip_serializing_if = "is_default")]
     pub spine_end: Option<SpinePoints>,
-    /// Radius of a round strip, model units; or radii at equal distances along the spine, between which it changes smoothly.
+    /// Radius of a round strip, model units; or radii at equal distances along the spine, which are
+    /// interpolated smoothly.
     #[serde(default, skip_serializing_if = "is_default")]
     pub radius: Option<Radius>,
-    /// Section of the strip across the spine: corners of a polygon around the origin, which is on the spine; model units.
+    /// Cross-section of the strip: corners of a polygon around the origin, which is on the spine;
+    /// model units.
     #[serde(default, skip_serializing_if = "is_default")]
     pub section: Option<Vec<[f64; 2]>>,
-    /// Direction of the section's x axis where the spine begins; without it, the direction in which the spine bends there.
+    /// Direction of the cross-section's x axis at the beginning of the spine; by default the
+    /// direction in which the spine bends at this point.
     #[serde(default, skip_serializing_if = "is_default")]
     pub reference: Option<[f64; 3]>,
-    /// Name of a tool, one of the recipe's `tools`, whose shape, support and profile are taken, where its own origin is the
-    /// world's.
+    /// Name of a tool, one of the recipe's `tools`, whose shape, support and profile are used. Its
+    /// origin is that of the world.
     #[serde(default, skip_serializing_if = "is_default")]
     pub tool: Option<String>,
-    /// How far the field reaches beyond radius or section, model units.
+    /// Distance from the radius or section at which the field ends, model units.
     #[serde(default, skip_serializing_if = "is_default")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub support: Option<f64>,
-    /// How the field fades; `quintic` without it, and any but `thesis`.
+    /// Falloff of the field; `quintic` by default, and any except `thesis`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub profile: Option<Profile>,
-    /// How far the core is carried, model units; backwards where it is negative.
+    /// Distance that the core moves, model units; a negative one moves it backward.
     pub distance: f64,
-    /// Direction in which the spine travels across; of any length.
+    /// Direction in which the spine moves sideways, of any length.
     #[serde(default, skip_serializing_if = "is_default")]
     pub direction: Option<[f64; 3]>,
 }
 
-/// Which way a strip carries the material inside it.
+/// Direction in which a strip moves the material inside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StripMode {
-    /// Along the spine, which stays in place.
+    /// Along the spine, which stays fixed.
     Along,
-    /// Across the spine, which travels with what it carries.
+    /// Across the spine, which moves with the material.
     Across,
 }
 
-/// Points of a spine, or the file that has them.
+/// Points of a spine, or the file that contains them.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum SpinePoints {
-    /// Points, in order, model units.
+    /// Points in order, model units.
     Points(Vec<[f64; 3]>),
     /// Name of a file, relative to the recipe.
     File(String),
 }
 
-/// One radius, or several.
+/// One radius or several.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Radius {
-    /// The same all along.
+    /// Equal along the spine.
     Constant(f64),
     /// At equal distances from the beginning of the spine to its end.
     Varying(Vec<f64>),
 }
 
 impl SpinePoints {
-    /// The points; none where they are in a file.
+    /// The points; empty if they are in a file.
     pub fn points(&self) -> &[[f64; 3]] {
         match self {
             Self::Points(points) => points,
@@ -97,7 +94,7 @@ impl SpinePoints {
         }
     }
 
-    /// The name of the file, where there is one.
+    /// Name of the file, if there is one.
     pub fn file(&self) -> Option<&str> {
         match self {
             Self::Points(_) => None,
@@ -116,7 +113,7 @@ impl Radius {
     }
 }
 
-// Read by hand: serde's untagged enums forget which element of a list was wrong.
+// Implemented by hand: serde's untagged enums do not report which element of a list is wrong.
 impl<'de> Deserialize<'de> for SpinePoints {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct PointsOrName;
@@ -167,79 +164,4 @@ impl<'de> Deserialize<'de> for Radius {
         }
         deserializer.deserialize_any(OneOrMany)
     }
-}
-
-pub(super) fn validate(strip: &Strip) -> Check {
-    spine("spine", &strip.spine)?;
-    strip.spine_end.as_ref().map_or(Ok(()), |end| spine("spine_end", end))?;
-    if let (SpinePoints::Points(start), Some(SpinePoints::Points(end))) = (&strip.spine, &strip.spine_end)
-        && start.len() != end.len()
-    {
-        return fail("spine_end", RecipeProblem::WrongLength { found: end.len(), expected: start.len() });
-    }
-    shape(strip)?;
-    finite("distance", strip.distance)?;
-    match (strip.mode, strip.direction) {
-        (StripMode::Along, None) => Ok(()),
-        (StripMode::Along, Some(_)) => other("direction", "is for mode = \"across\"; remove it"),
-        (StripMode::Across, Some(vector)) => direction("direction", &vector),
-        // A spine that changes its shape need not travel besides.
-        (StripMode::Across, None) if strip.distance == 0.0 && strip.spine_end.is_some() => Ok(()),
-        (StripMode::Across, None) => fail("direction", RecipeProblem::Missing),
-    }
-}
-
-fn spine(key: &str, spine: &SpinePoints) -> Check {
-    let SpinePoints::Points(points) = spine else { return Ok(()) };
-    if points.len() < 2 {
-        return fail(key, RecipeProblem::TooSmall { found: points.len() as u64, least: 2 });
-    }
-    points.iter().enumerate().try_for_each(|(index, point)| all_finite(&format!("{key}.{index}"), point))
-}
-
-fn shape(strip: &Strip) -> Check {
-    let given = [strip.radius.is_some(), strip.section.is_some(), strip.tool.is_some()];
-    match given.iter().filter(|is_given| **is_given).count() {
-        0 => return other("", "says nothing of what is about the spine; add one of radius, section and tool"),
-        1 => {}
-        _ => return other("", "has more than one of radius, section and tool; keep one of them"),
-    }
-    if strip.tool.is_some() {
-        let keys = [("support", strip.support.is_some()), ("profile", strip.profile.is_some())];
-        if let Some((key, _)) = keys.iter().find(|(_, is_given)| *is_given) {
-            return other(key, "is that of the tool; remove it here");
-        }
-    } else {
-        match strip.support {
-            Some(support) => positive("support", support)?,
-            None => return fail("support", RecipeProblem::Missing),
-        }
-    }
-    if let Some(radius) = &strip.radius {
-        if radius.values().is_empty() {
-            return fail("radius", RecipeProblem::TooSmall { found: 0, least: 1 });
-        }
-        for (index, &value) in radius.values().iter().enumerate() {
-            let key = if radius.values().len() == 1 { "radius".to_owned() } else { format!("radius.{index}") };
-            positive(&key, value)?;
-        }
-    }
-    if let Some(section) = &strip.section {
-        if section.len() < 3 {
-            return fail("section", RecipeProblem::TooSmall { found: section.len() as u64, least: 3 });
-        }
-        for (index, point) in section.iter().enumerate() {
-            all_finite(&format!("section.{index}"), point)?;
-        }
-    }
-    match strip.reference {
-        Some(_) if strip.section.is_none() => other("reference", "is for strips with a section; remove it"),
-        Some(reference) => direction("reference", &reference),
-        None => Ok(()),
-    }?;
-    smooth_profile(strip.profile.unwrap_or_default())
-}
-
-fn other(key: &str, text: &str) -> Check {
-    fail(key, RecipeProblem::Other(text.to_owned()))
 }

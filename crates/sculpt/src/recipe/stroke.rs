@@ -1,36 +1,44 @@
-//! The strokes: one entry of the log for each thing done to the mesh.
+//! Strokes.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{pose::Pose, region::Region, ring::Ring, strip::Strip, tagged::tagged};
 
-/// One deformation. Strokes act one after the other.
+/// One deformation. Strokes act one after another.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Stroke {
-    /// The rigid motion of a tool, which carries the material around it along.
+    /// Rigid motion of a tool, which displaces the material around it.
     Move(Move),
-    /// A twist of all space about an axis.
+    /// Twist of all space about an axis.
     Twist(Twist),
-    /// A swirl of all space about an axis that grows with the squared distance from a point.
+    /// Rotation of all space about an axis, by an angle that grows with the squared distance from a
+    /// point.
     Bend(Bend),
-    /// A tool presses its relief into the surface, and what it displaces is raised around it.
+    /// Press of a tool's relief into the surface; the displaced volume rises around it.
     Stamp(Stamp),
-    /// A solid about a spine carries the material inside it, along the spine or across it.
+    /// Motion of the material around a spine, along the spine or across it.
     Strip(Strip),
-    /// A ring carries the material inside it along its axis.
+    /// Motion of the material inside a ring, along the axis of the ring.
     Ring(Ring),
-    /// A jointed tool goes through postures.
+    /// Motion of a jointed tool.
     Pose(Pose),
-    /// A region of space moves rigidly, and what surrounds it gives way.
+    /// Rigid motion of a region of space, which fades in a layer around it.
     Region(Region),
 }
 
 tagged!(Stroke { "move" => Move(Move), "twist" => Twist(Twist), "bend" => Bend(Bend), "stamp" => Stamp(Stamp), "strip" => Strip(Strip), "ring" => Ring(Ring), "pose" => Pose(Pose), "region" => Region(Region) });
 
 impl Stroke {
-    /// The name that recipes and reports use for this kind of stroke.
+    /// Name of this kind of stroke in recipes and reports.
+    ///
+    /// ```
+    /// use isochore_sculpt::recipe::{Stroke, Twist};
+    ///
+    /// let twist = Twist { origin: [0.0; 3], axis: [0.0, 0.0, 1.0], degrees_per_unit: 30.0 };
+    /// assert_eq!(Stroke::Twist(twist).kind(), "twist");
+    /// ```
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Move(_) => "move",
@@ -51,17 +59,18 @@ impl Stroke {
 pub struct Move {
     /// Name of the tool, one of the recipe's `tools`.
     pub tool: String,
-    /// Poses that the tool goes through, at least two; between neighbors it moves along a screw.
+    /// Poses of the tool, at least two; it moves along a screw from each to the next.
     pub keys: Vec<Key>,
 }
 
-/// A pose of a tool in the world.
+/// Pose of a tool in the world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Key {
-    /// Place of the tool's origin, model units.
+    /// Position of the tool's origin, model units.
     pub at: [f64; 3],
-    /// Axis x, y, z and angle in degrees, right-handed; absolute, not added to the pose before.
+    /// Axis x, y, z and angle in degrees, right-handed; absolute, not relative to the previous
+    /// pose.
     #[serde(default = "super::rotation::no_rotation", skip_serializing_if = "super::rotation::is_no_rotation")]
     pub rotate: [f64; 4],
 }
@@ -70,11 +79,11 @@ pub struct Key {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Twist {
-    /// A point of the axis, in the plane that stays in place; model units.
+    /// Point of the axis, in the plane that stays fixed; model units.
     pub origin: [f64; 3],
     /// Direction of the axis, of any length.
     pub axis: [f64; 3],
-    /// Angle for each unit of height along the axis, right-handed.
+    /// Angle per unit of height along the axis, right-handed.
     pub degrees_per_unit: f64,
 }
 
@@ -82,11 +91,11 @@ pub struct Twist {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bend {
-    /// The point that stays in place, model units.
+    /// Point that stays fixed, model units.
     pub origin: [f64; 3],
     /// Direction of the axis, of any length.
     pub axis: [f64; 3],
-    /// Angle for each squared unit of distance from the origin, right-handed.
+    /// Angle per squared unit of distance from the origin, right-handed.
     pub degrees_per_unit2: f64,
 }
 
@@ -94,13 +103,16 @@ pub struct Bend {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stamp {
-    /// Name of the tool, one of the recipe's `tools`. What it displaces is raised within its support; its profile plays no part.
+    /// Name of the tool, one of the recipe's `tools`. The displaced volume rises within its
+    /// support; its profile is ignored.
     pub tool: String,
-    /// Poses that the tool goes through, at least two, the first outside the target; between neighbors it moves along a screw.
+    /// Poses of the tool, at least two, the first outside the target; it moves along a screw from
+    /// each to the next.
     pub keys: Vec<Key>,
-    /// Longest edge where the tool touches, model units: an eighth of the relief's wavelength shows it well. Without it, a cell of
-    /// the tool's distance grid, or an eighth of the shortest extent of a shape.
-    #[serde(default, skip_serializing_if = "super::is_default")]
+    /// Longest edge where the tool touches, model units: an eighth of the relief's wavelength shows
+    /// it well. By default a cell of the tool's distance grid, or an eighth of the shortest extent
+    /// of a shape.
+    #[serde(default, skip_serializing_if = "super::defaults::is_default")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub relief: Option<f64>,
 }

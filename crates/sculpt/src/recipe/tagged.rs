@@ -1,22 +1,22 @@
-//! Enums told apart by their key `kind`.
+//! Enums whose key `kind` gives the variant.
 //!
-//! Serde's own internally tagged enums are read through a buffer that forgets which key of the variant was wrong. Here the
-//! variant is read straight from the map when `kind` is its first key, as the recipe's reader and every serializer of ours
-//! arrange it; from a map in any other order it still reads, by way of a buffer.
+//! Serde reads internally tagged enums through a buffer, which loses the key at fault. This module
+//! reads the variant directly from the map if `kind` is the first key, as the reader and the
+//! serializers of recipes ensure. Otherwise it uses a buffer.
 
 use std::{fmt, marker::PhantomData};
 
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, Visitor, value::MapDeserializer};
 
-/// The key that tells the variants apart.
+/// The key that gives the variant.
 pub(crate) const KIND: &str = "kind";
 
 /// An enum whose variants are named by `kind`.
 pub(crate) trait Tagged: Sized {
-    /// The names of the variants.
+    /// Names of the variants.
     const KINDS: &'static [&'static str];
 
-    /// Reads the variant `kind`, one of [`KINDS`](Self::KINDS), out of the other keys.
+    /// Reads the variant `kind`, one of [`KINDS`](Self::KINDS), from the other keys.
     fn from_map<'de, M: MapAccess<'de>>(kind: &'static str, map: M) -> Result<Self, M::Error>;
 }
 

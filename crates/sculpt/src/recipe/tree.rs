@@ -1,13 +1,16 @@
-//! The text of a recipe as a tree whose every value knows where it was written.
+//! The text of a recipe as a tree of values with their source locations.
 
 use std::fmt;
 
 use jsonc_parser::{ParseOptions, ast, common::Ranged, parse_to_ast};
 use toml::de::{DeTable, DeValue};
 
-use super::error::{Location, RecipeError, RecipeProblem};
+use super::{
+    error::{Location, RecipeError},
+    problem::{NoSuchElement, SyntaxProblem},
+};
 
-/// A value with the place where it was written.
+/// A value with its source location.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Node {
     pub(crate) location: Location,
@@ -25,7 +28,7 @@ pub(crate) enum Value {
     Table(Vec<Entry>),
 }
 
-/// A key of a table, where the key itself was written, and its value.
+/// A key of a table, its source location, and its value.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Entry {
     pub(crate) key: String,
@@ -33,10 +36,20 @@ pub(crate) struct Entry {
     pub(crate) node: Node,
 }
 
-/// A setting that wins over the recipe: `tools.ball.support=0.2`.
+/// A setting that replaces a value of a recipe: `tools.ball.support=0.2`.
 ///
-/// The key is a dotted path in which an element of a list goes by its number, from zero: `stroke.0.keys.1.at`. The value is typed
-/// as in TOML; quotes around a string may be left out.
+/// The key is a dotted path; elements of lists go by their index: `stroke.0.keys.1.at`. The value
+/// has the syntax of TOML, except that a string needs no quotes.
+///
+/// ```
+/// use isochore_sculpt::recipe::{Format, Override, Recipe};
+///
+/// let text = "recipe = 1\ntarget = { mesh = 'column.obj' }";
+/// let setting = Override::parse("refine.max_triangles=5000")?;
+/// let recipe = Recipe::parse(text, Format::Toml, &[setting])?;
+/// assert_eq!(recipe.refine.max_triangles, 5000);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Override {
     text: String,
@@ -45,15 +58,15 @@ pub struct Override {
 }
 
 impl Override {
-    /// Reads `KEY=VALUE`.
+    /// Parses `KEY=VALUE`.
     ///
     /// # Errors
-    /// Where there is no `=`, the key is not a dotted path, or the value is not one.
-    pub fn parse(text: &str) -> Result<Self, RecipeError> {
+    /// There is no `=`, or the key or the value is malformed.
+    pub fn parse(text: &str) -> Result<Self, RecipeError<SyntaxProblem>> {
         let location = Location::Override(text.to_owned());
-        let wrong = |message: &str| syntax(message, location.clone());
-        let (key, value) = text.split_once('=').ok_or_else(|| wrong("has no `=`; write KEY=VALUE"))?;
-        // The key is read as that of a line of TOML, which makes a table in a table of each of its steps.
+        let wrong = |message: &str| malformed(message, location.clone());
+        let (key, value) = text.split_once('=').ok_or_else(|| syntax(SyntaxProblem::NoEqualsSign, location.clone()))?;
+        // A TOML parser turns each step of the key into a table inside the previous one.
         let line = format!("{} = 0", key.trim());
         let table = DeTable::parse(&line).map_err(|error| wrong(error.message()))?;
         let mut node = &Node::table_from_toml(table.get_ref(), &|_| location.clone())?;
@@ -66,7 +79,7 @@ impl Override {
         }
         let value = match DeValue::parse(value.trim()) {
             Ok(value) => Node::value_from_toml(value.get_ref(), &|_| location.clone(), location.clone())?,
-            // A word that is no value of any other type is a string whose quotes were left out.
+            // A word that is not a value of another type is a string without quotes.
             Err(error) if value.trim().is_empty() || value.contains(['"', '\'', '[', ']', '{', '}', '\n']) => {
                 return Err(wrong(error.message()));
             }
@@ -82,11 +95,18 @@ impl fmt::Display for Override {
     }
 }
 
-fn syntax(message: &str, location: Location) -> RecipeError {
-    RecipeError::new("", RecipeProblem::Syntax(message.lines().collect::<Vec<_>>().join(", "))).at(location)
+type SyntaxError = RecipeError<SyntaxProblem>;
+
+fn syntax(problem: SyntaxProblem, location: Location) -> SyntaxError {
+    RecipeError::new("", problem).at(location)
 }
 
-/// Where the lines of a text begin, so that the line of a place is found without reading the text again.
+/// The error of a parser, whose messages may have several lines.
+fn malformed(message: &str, location: Location) -> SyntaxError {
+    syntax(SyntaxProblem::Malformed(message.lines().collect::<Vec<_>>().join(", ")), location)
+}
+
+/// Offsets at which the lines of a text begin, for finding the line of an offset by bisection.
 struct Lines {
     starts: Vec<usize>,
 }
@@ -103,15 +123,15 @@ impl Lines {
 }
 
 impl Node {
-    pub(crate) fn from_toml(text: &str) -> Result<Self, RecipeError> {
+    pub(crate) fn from_toml(text: &str) -> Result<Self, SyntaxError> {
         let lines = Lines::of(text);
         let table = DeTable::parse(text).map_err(|error| {
-            syntax(error.message(), error.span().map_or(Location::Unknown, |span| lines.locate(span.start)))
+            malformed(error.message(), error.span().map_or(Location::Unknown, |span| lines.locate(span.start)))
         })?;
         Self::table_from_toml(table.get_ref(), &|offset| lines.locate(offset))
     }
 
-    pub(crate) fn from_json(text: &str) -> Result<Self, RecipeError> {
+    pub(crate) fn from_json(text: &str) -> Result<Self, SyntaxError> {
         let options = ParseOptions {
             allow_comments: false,
             allow_loose_object_property_names: false,
@@ -126,39 +146,39 @@ impl Node {
         };
         let lines = Lines::of(text);
         let parsed = parse_to_ast(text, &Default::default(), &options)
-            .map_err(|error| syntax(&error.kind().to_string(), lines.locate(error.range().start)))?;
+            .map_err(|error| malformed(&error.kind().to_string(), lines.locate(error.range().start)))?;
         match parsed.value {
             Some(value) => Self::value_from_json(&value, &lines),
-            None => Err(syntax("the file holds no value", Location::Unknown)),
+            None => Err(malformed("the file holds no value", Location::Unknown)),
         }
     }
 
-    fn table_from_toml(table: &DeTable<'_>, locate: &dyn Fn(usize) -> Location) -> Result<Self, RecipeError> {
+    fn table_from_toml(table: &DeTable<'_>, locate: &dyn Fn(usize) -> Location) -> Result<Self, SyntaxError> {
         let entries = table.iter().map(|(key, value)| {
             let location = locate(key.span().start);
             let node = Self::value_from_toml(value.get_ref(), locate, locate(value.span().start))?;
             Ok(Entry { key: key.get_ref().to_string(), location, node })
         });
-        Ok(Self { location: locate(0), value: Value::Table(entries.collect::<Result<_, RecipeError>>()?) })
+        Ok(Self { location: locate(0), value: Value::Table(entries.collect::<Result<_, SyntaxError>>()?) })
     }
 
     fn value_from_toml(
         value: &DeValue<'_>,
         locate: &dyn Fn(usize) -> Location,
         location: Location,
-    ) -> Result<Self, RecipeError> {
+    ) -> Result<Self, SyntaxError> {
         let value = match value {
             DeValue::String(text) => Value::String(text.to_string()),
             DeValue::Boolean(value) => Value::Boolean(*value),
             DeValue::Integer(digits) => match i64::from_str_radix(digits.as_str(), digits.radix()) {
                 Ok(integer) => Value::Integer(integer),
-                Err(_) => return Err(syntax(&format!("the whole number {} is too large", digits.as_str()), location)),
+                Err(_) => return Err(syntax(SyntaxProblem::IntegerTooLarge(digits.to_string()), location)),
             },
             DeValue::Float(digits) => match digits.as_str().parse() {
                 Ok(float) => Value::Float(float),
-                Err(_) => return Err(syntax(&format!("{} is not a number", digits.as_str()), location)),
+                Err(_) => return Err(syntax(SyntaxProblem::NotANumber(digits.to_string()), location)),
             },
-            DeValue::Datetime(_) => return Err(syntax("dates have no place in a recipe", location)),
+            DeValue::Datetime(_) => return Err(syntax(SyntaxProblem::Date, location)),
             DeValue::Array(array) => Value::Array(
                 array
                     .iter()
@@ -170,7 +190,7 @@ impl Node {
         Ok(Self { location, value })
     }
 
-    fn value_from_json(value: &ast::Value<'_>, lines: &Lines) -> Result<Self, RecipeError> {
+    fn value_from_json(value: &ast::Value<'_>, lines: &Lines) -> Result<Self, SyntaxError> {
         let location = lines.locate(value.range().start);
         let value = match value {
             ast::Value::NullKeyword(_) => Value::Null,
@@ -179,7 +199,7 @@ impl Node {
             ast::Value::NumberLit(literal) => match (literal.value.parse(), literal.value.parse()) {
                 (Ok(integer), _) => Value::Integer(integer),
                 (_, Ok(float)) => Value::Float(float),
-                _ => return Err(syntax(&format!("{} is not a number", literal.value), location)),
+                _ => return Err(syntax(SyntaxProblem::NotANumber(literal.value.to_string()), location)),
             },
             ast::Value::Array(array) => {
                 let items = array.elements.iter().map(|item| Self::value_from_json(item, lines));
@@ -191,7 +211,7 @@ impl Node {
                     let key = property.name.as_str().to_owned();
                     let location = lines.locate(property.range().start);
                     if entries.iter().any(|entry| entry.key == key) {
-                        return Err(syntax(&format!("the key `{key}` is given twice"), location));
+                        return Err(syntax(SyntaxProblem::DuplicateKey(key), location));
                     }
                     entries.push(Entry { key, location, node: Self::value_from_json(&property.value, lines)? });
                 }
@@ -201,8 +221,8 @@ impl Node {
         Ok(Self { location, value })
     }
 
-    /// Puts what the override says in the place of what the recipe says.
-    pub(crate) fn apply(&mut self, setting: &Override) -> Result<(), RecipeError> {
+    /// Replaces the value that the override names.
+    pub(crate) fn apply(&mut self, setting: &Override) -> Result<(), RecipeError<NoSuchElement>> {
         let location = &setting.value.location;
         let mut node = self;
         for (depth, step) in setting.path.iter().enumerate() {
@@ -216,8 +236,7 @@ impl Node {
                         Some(item) => item,
                         None => {
                             let path = setting.path[..=depth].join(".");
-                            let problem = RecipeProblem::NoSuchElement { length };
-                            return Err(RecipeError::new(&path, problem).at(location.clone()));
+                            return Err(RecipeError::new(&path, NoSuchElement { length }).at(location.clone()));
                         }
                     }
                 }
@@ -237,11 +256,18 @@ impl Node {
         Ok(())
     }
 
-    /// The place of the key `path` names, or of the nearest table above it that was written down.
+    /// `error` with the location of its key.
+    pub(crate) fn located<P>(&self, error: RecipeError<P>) -> RecipeError<P> {
+        let location = self.locate(&error.key);
+        error.at(location)
+    }
+
+    /// Location of the key `path`, or of the innermost table above it that the text contains.
     pub(crate) fn locate(&self, path: &str) -> Location {
         let mut node = self;
         let mut location = Location::Unknown;
-        // A tool's name may itself hold dots, so a step takes whichever key the rest of the path begins with.
+        // Names of tools may contain dots, so each step takes the key with which the rest of the
+        // path begins.
         let mut rest = path;
         while !rest.is_empty() {
             let next = match &node.value {
@@ -257,8 +283,8 @@ impl Node {
                 }
                 _ => None,
             };
-            let Some((child, place, after)) = next else { break };
-            (node, location, rest) = (child, place.clone(), after);
+            let Some((child, child_location, after)) = next else { break };
+            (node, location, rest) = (child, child_location.clone(), after);
         }
         location
     }

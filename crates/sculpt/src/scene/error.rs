@@ -3,14 +3,18 @@
 use isochore_field as field;
 use isochore_mesh::{Cancelled, DistanceFieldError};
 
-use crate::recipe::RecipeError;
+use super::problem::{SceneProblem, ShapeProblem};
+use crate::recipe::{InvalidRecipe, RecipeError};
 
 /// Errors when building one tool of a recipe.
 #[derive(Debug, thiserror::Error)]
 pub enum BuildToolError {
     /// A key of the tool has an invalid value.
     #[error(transparent)]
-    Recipe(#[from] RecipeError),
+    Invalid(#[from] RecipeError<InvalidRecipe>),
+    /// The shape of the tool cannot be built.
+    #[error(transparent)]
+    Shape(#[from] RecipeError<ShapeProblem>),
     /// The mesh that gives the tool its shape was not passed in.
     #[error("the mesh `{name}` was not loaded")]
     MissingMesh {
@@ -41,9 +45,12 @@ pub enum BuildToolError {
 /// Errors when building the target and the strokes of a recipe.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// A key has an invalid value, or one that does not fit the target.
+    /// A key has an invalid value.
     #[error(transparent)]
-    Recipe(#[from] RecipeError),
+    Invalid(#[from] RecipeError<InvalidRecipe>),
+    /// A key has a value that does not fit the target or the field.
+    #[error(transparent)]
+    Unbuildable(#[from] RecipeError<SceneProblem>),
     /// The mesh of the target was not passed in.
     #[error("the mesh `{name}` was not loaded")]
     MissingMesh {
@@ -86,7 +93,8 @@ impl BuildToolError {
     /// Dotted path of the recipe's key at fault, if there is one.
     pub fn key(&self) -> Option<String> {
         match self {
-            Self::Recipe(error) => Some(error.key.clone()),
+            Self::Invalid(error) => Some(error.key.clone()),
+            Self::Shape(error) => Some(error.key.clone()),
             Self::DistanceField { name, .. } => Some(format!("tools.{name}.shape")),
             Self::Tool { name, .. } => Some(format!("tools.{name}")),
             Self::MissingMesh { .. } | Self::Cancelled(_) => None,
@@ -98,7 +106,8 @@ impl SceneError {
     /// Dotted path of the recipe's key at fault, if there is one.
     pub fn key(&self) -> Option<String> {
         match self {
-            Self::Recipe(error) => Some(error.key.clone()),
+            Self::Invalid(error) => Some(error.key.clone()),
+            Self::Unbuildable(error) => Some(error.key.clone()),
             Self::Tool(error) => error.key(),
             Self::Stroke { index, .. } => Some(format!("stroke.{index}")),
             Self::MissingMesh { .. } | Self::MissingCurve { .. } | Self::Cancelled(_) => None,

@@ -1,4 +1,4 @@
-//! The mask of a recipe, put on its strokes.
+//! Masks of strokes.
 
 use std::sync::Arc;
 
@@ -6,17 +6,21 @@ use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::{Aabb, TriMesh};
 
-use super::SceneError;
-use crate::recipe::{Mask, Recipe, RecipeError, RecipeProblem, VertexWeights};
+use super::{
+    SceneError,
+    problem::{MaskProblem, SceneProblem},
+};
+use crate::recipe::{Mask, Recipe, RecipeError, VertexWeights};
 
-/// The strokes of `recipe`, held back by its mask. What is deformed is in `bounds`; weights of vertices belong to `target`.
+/// The masked strokes of `recipe`. `bounds` contains the target or the points; the weights of
+/// vertices refer to `target`.
 pub(super) fn masked(
     strokes: Vec<field::Stroke>,
     recipe: &Recipe,
     target: Option<&TriMesh>,
     bounds: Aabb,
 ) -> Result<Vec<field::Stroke>, SceneError> {
-    let mask = Arc::new(mask(&recipe.mask, target)?);
+    let mask = Arc::new(mask(&recipe.mask, target).map_err(RecipeError::widen::<SceneProblem>)?);
     let masked = |(index, stroke): (usize, &field::Stroke)| {
         let stroke = stroke.masked(&mask, bounds, recipe.integrate.step);
         stroke.map_err(|source| SceneError::Stroke { index, source: source.into() })
@@ -24,10 +28,9 @@ pub(super) fn masked(
     strokes.iter().enumerate().map(masked).collect()
 }
 
-/// What is painted on vertices counts where their mesh, the `target`, is there.
-pub(crate) fn mask(mask: &Mask, target: Option<&TriMesh>) -> Result<field::Mask, RecipeError> {
-    let wrong =
-        |key: String| move |error: field::MaskError| RecipeError::new(&key, RecipeProblem::Other(error.to_string()));
+/// Builds a mask. The weights of vertices are ignored without a `target`.
+pub(crate) fn mask(mask: &Mask, target: Option<&TriMesh>) -> Result<field::Mask, RecipeError<MaskProblem>> {
+    let wrong = |key: String| move |error: field::MaskError| RecipeError::new(&key, error);
     let pins = mask.pins.iter().enumerate().map(|(index, pin)| {
         field::Pin::new(DVec3::from_array(pin.center), pin.radius, pin.support)
             .map_err(wrong(format!("mask.pins.{index}")))
@@ -49,8 +52,7 @@ pub(crate) fn mask(mask: &Mask, target: Option<&TriMesh>) -> Result<field::Mask,
             })?)
         }
         (Some(VertexWeights::File(name)), _) => {
-            let text = format!("the file `{name}` was not loaded; put its numbers in its place");
-            return Err(RecipeError::new("mask.vertices", RecipeProblem::Other(text)));
+            return Err(RecipeError::new("mask.vertices", MaskProblem::WeightsNotLoaded(name.clone())));
         }
     };
     field::Mask::new(pins, vertices, mirrors).map_err(wrong("mask.mirror".to_owned()))

@@ -1,4 +1,4 @@
-//! Jointed tools and their postures.
+//! Strokes of jointed tools.
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -8,11 +8,12 @@ use isochore_mesh::Aabb;
 
 use crate::recipe::{
     BoneKey, Pose,
-    pose::{ROOT, turn_of},
+    pose::{ROOT, rotation_of},
     rotation::quaternion,
 };
 
-/// The stroke that `pose` describes, with these tools. The error names the part of the pose that is wrong, where it is one.
+/// The stroke that `pose` describes. The outer error refers to the jointed tool, the inner one to
+/// its motion.
 pub(super) fn stroke(
     pose: &Pose,
     tools: &BTreeMap<&str, Arc<field::Tool>>,
@@ -32,12 +33,13 @@ pub(super) fn stroke(
 fn posture(pose: &Pose, key: &BTreeMap<String, BoneKey>) -> field::Posture {
     let at = key.get(ROOT).and_then(|root| root.at).map_or(DVec3::ZERO, DVec3::from_array);
     field::Posture {
-        root: field::Pose { rotation: turn_of(key, ROOT), translation: at },
-        turns: pose.bones.iter().map(|bone| turn_of(key, &bone.name)).collect(),
+        root: field::Pose { rotation: rotation_of(key, ROOT), translation: at },
+        turns: pose.bones.iter().map(|bone| rotation_of(key, &bone.name)).collect(),
     }
 }
 
-/// How far around its shape the distance of every bone must be known, where `shape` gives bounds and support of a tool.
+/// Distance from its shape up to which every bone must be sampled. `shape` returns bounds and
+/// support of a tool.
 pub(super) fn least_reach<E>(pose: &Pose, shape: impl Fn(&str) -> Result<(Aabb, f64), E>) -> Result<f64, E> {
     let shapes: Vec<_> = pose.bones.iter().map(|bone| shape(&bone.tool)).collect::<Result<_, _>>()?;
     Ok(field::JointedTool::least_reach(shapes))

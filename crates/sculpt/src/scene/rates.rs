@@ -1,17 +1,19 @@
-//! Twists and bends that refinement could not follow.
+//! Limits of twists and bends.
 
 use glam::DVec3;
 use isochore_mesh::Aabb;
 
-use crate::recipe::{Recipe, RecipeError, RecipeProblem, Stroke};
+use super::problem::SceneProblem;
+use crate::recipe::{Recipe, RecipeError, Stroke};
 
-/// Most that a twist or a bend may shear the target, as the way that planes or spheres slide over each other against their
-/// distance. An edge is drawn out to about as many times its length, so that triangles grow in number as much: larger fills the
-/// limit on triangles with what is wound up finer than they are; smaller refuses what can be followed.
+/// Largest shear of the target by a twist or a bend: the displacement of neighboring planes or
+/// spheres relative to each other, divided by their distance. Edges are stretched by about this
+/// factor, and the number of triangles grows with it. A larger value exhausts the limit on
+/// triangles before they resolve the flow; a smaller one refuses flows that refinement can follow.
 const MAX_SHEAR: f64 = 100.0;
 
-/// Refuses a rate that shears what is in `bounds` beyond what refinement can follow.
-pub(super) fn check(recipe: &Recipe, bounds: Aabb) -> Result<(), RecipeError> {
+/// Refuses a rate that shears a target in `bounds` more than refinement can follow.
+pub(super) fn check(recipe: &Recipe, bounds: Aabb) -> Result<(), RecipeError<SceneProblem>> {
     let strokes = recipe.strokes.iter().enumerate().filter(|_| recipe.refine.enabled);
     for (index, stroke) in strokes {
         let (origin, key, degrees) = match stroke {
@@ -28,11 +30,8 @@ pub(super) fn check(recipe: &Recipe, bounds: Aabb) -> Result<(), RecipeError> {
         let per_degree = per_degree.into_iter().fold(0.0, f64::max).to_radians();
         if degrees.abs() * per_degree > MAX_SHEAR {
             let most = MAX_SHEAR / per_degree;
-            let text = format!(
-                "is {degrees}, which winds the target up finer than refinement can follow; give {most:.0} or less, or set \
-                 refine.enabled = false"
-            );
-            return Err(RecipeError::new(&format!("stroke.{index}.{key}"), RecipeProblem::Other(text)));
+            let problem = SceneProblem::Shear { found: degrees, most };
+            return Err(RecipeError::new(&format!("stroke.{index}.{key}"), problem));
         }
     }
     Ok(())

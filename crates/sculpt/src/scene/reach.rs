@@ -3,8 +3,8 @@
 use super::{error::BuildToolError, meshes::Meshes, pose, tool::shape_bounds};
 use crate::recipe::{InnerRegion, Recipe, Stroke, ToolShape};
 
-/// Distance from the shape of the tool `name` up to which the strokes evaluate it, model units: the support at least, and
-/// farther for an inner region or a bone.
+/// Distance from the shape of the tool `name` up to which the strokes evaluate it, model units: the
+/// support at least, and farther for an inner region or a bone.
 ///
 /// Closed-form shapes have no limit, so only the support is returned for them.
 pub(super) fn of_tool(recipe: &Recipe, name: &str, meshes: &Meshes) -> Result<f64, BuildToolError> {
@@ -24,7 +24,7 @@ pub(super) fn of_tool(recipe: &Recipe, name: &str, meshes: &Meshes) -> Result<f6
         {
             let extent = |name: &str| {
                 let tool = &recipe.tools[name];
-                Ok::<_, BuildToolError>((shape_bounds(tool, meshes)?, tool.support))
+                Ok::<_, BuildToolError>((shape_bounds(name, tool, meshes)?, tool.support))
             };
             reach = reach.max(pose::least_reach(pose, extent)?);
         }

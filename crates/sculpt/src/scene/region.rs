@@ -1,4 +1,4 @@
-//! Regions of space that move.
+//! Strokes of moving regions.
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -6,21 +6,20 @@ use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::{self as mesh, Aabb, Distance};
 
-use super::profile::profile;
-use crate::recipe::{InnerRegion, RecipeError, RecipeProblem, Region, rotation::quaternion};
+use super::{problem::SceneProblem, profile::profile};
+use crate::recipe::{InnerRegion, RecipeError, Region, rotation::quaternion};
 
-/// The stroke that `region` describes, with these tools, for what lies in the box `reference` of the world. The outer error names
-/// a key of the region.
+/// The stroke that `region` describes, for a target in the box `reference`, in world coordinates.
+/// The outer error has a key of the region.
 pub(super) fn stroke(
     region: &Region,
     tools: &BTreeMap<&str, Arc<field::Tool>>,
     step: f64,
     reference: Aabb,
-) -> Result<Result<field::Stroke, field::StrokeError>, RecipeError> {
-    let other = |key: &'static str| move |text: String| RecipeError::new(key, RecipeProblem::Other(text));
-    let (inner, placement) = inner(&region.inner, tools).map_err(|error| other("inner")(error.to_string()))?;
+) -> Result<Result<field::Stroke, field::StrokeError>, RecipeError<SceneProblem>> {
+    let (inner, placement) = inner(&region.inner, tools).map_err(|error| RecipeError::new("inner", error))?;
     let moving = field::Region::new(inner, placement, region.outer_distance, profile(region.profile))
-        .map_err(|error| other("")(error.to_string()))?;
+        .map_err(|error| RecipeError::new("", error))?;
     let motion = match (&region.motion.translate, &region.motion.rotate) {
         (_, Some(turn)) => field::RegionMotion::Rotation {
             origin: turn.origin.into(),
@@ -32,7 +31,7 @@ pub(super) fn stroke(
     Ok(moving.stroke(motion, step, reference).map(field::Stroke::Move).map_err(Into::into))
 }
 
-/// The distance to an inner region in coordinates of its own, and the world from these.
+/// The distance to an inner region in local coordinates, and the pose world from local.
 fn inner(
     region: &InnerRegion,
     tools: &BTreeMap<&str, Arc<field::Tool>>,

@@ -1,4 +1,4 @@
-//! Strips and rings.
+//! Fields of strips and rings.
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -8,7 +8,7 @@ use isochore_field as field;
 use super::profile::profile;
 use crate::recipe::{Ring, Strip, StripMode};
 
-/// The strip that a recipe describes, which is valid and whose curve files have been put in.
+/// The field of a valid strip, in which points have replaced curve files.
 pub(super) fn strip(
     strip: &Strip,
     tools: &BTreeMap<&str, Arc<field::Tool>>,

@@ -6,8 +6,8 @@ use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::Aabb;
 
-use super::{SceneError, pose, region, strip};
-use crate::recipe::{Key, RecipeError, RecipeProblem, Stroke};
+use super::{SceneError, pose, problem::SceneProblem, region, strip};
+use crate::recipe::{InvalidRecipe, Key, RecipeError, Stroke};
 
 /// Builds the strokes of a valid recipe, in which points replace curve files.
 pub(super) struct StrokeBuilder<'a> {
@@ -49,9 +49,8 @@ impl StrokeBuilder<'_> {
             }
             Stroke::Region(region) => region::stroke(region, self.tools, self.step, self.bounds)
                 .map_err(|error| error.inside(&index.to_string()).inside("stroke"))?,
-            Stroke::Pose(pose) => pose::stroke(pose, self.tools, self.step).map_err(|error| {
-                RecipeError::new(&format!("stroke.{index}"), RecipeProblem::Other(error.to_string()))
-            })?,
+            Stroke::Pose(pose) => pose::stroke(pose, self.tools, self.step)
+                .map_err(|error| RecipeError::<SceneProblem>::new(&format!("stroke.{index}"), error))?,
         };
         stroke.map_err(|source| SceneError::Stroke { index, source })
     }
@@ -65,6 +64,6 @@ impl StrokeBuilder<'_> {
     }
 }
 
-fn poses(keys: &[Key]) -> Result<Vec<field::Pose>, RecipeError> {
-    keys.iter().map(Key::pose).collect()
+fn poses(keys: &[Key]) -> Result<Vec<field::Pose>, RecipeError<InvalidRecipe>> {
+    keys.iter().map(|key| key.pose().map_err(RecipeError::widen)).collect()
 }

@@ -9,7 +9,7 @@ use super::{
     SceneError,
     meshes::{Meshes, transformed},
 };
-use crate::recipe::{RecipeError, RecipeProblem, Target, TargetShape, Transform};
+use crate::recipe::{CombinationProblem, InvalidRecipe, RecipeError, Target, TargetShape, Transform};
 
 /// The mesh of `target` in world coordinates.
 pub(super) fn build(target: &Target, meshes: &Meshes) -> Result<Arc<TriMesh>, SceneError> {
@@ -18,7 +18,10 @@ pub(super) fn build(target: &Target, meshes: &Meshes) -> Result<Arc<TriMesh>, Sc
             Arc::clone(meshes.get(name).ok_or_else(|| SceneError::MissingMesh { name: name.to_owned() })?)
         }
         (None, Some(shape)) => Arc::new(shape_mesh(shape)),
-        (None, None) => return Err(RecipeError::new("target", RecipeProblem::NeitherMeshNorShape).into()),
+        (None, None) => {
+            let problem = CombinationProblem::NeitherMeshNorShape;
+            return Err(RecipeError::<InvalidRecipe>::new("target", problem).into());
+        }
     };
     // Even the identity rounds: a mesh that is not placed must keep the bits of its file.
     Ok(if target.transform == Transform::default() { mesh } else { Arc::new(transformed(&mesh, &target.transform)) })

@@ -5,26 +5,41 @@ use std::sync::Arc;
 use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::{
-    self as mesh, Aabb, Distance, DistanceField, DistanceFieldError, DistanceFieldOptions, Monitor, Padding, TriMesh,
+    self as mesh, Aabb, Distance, DistanceField, DistanceFieldError, DistanceFieldOptions, Monitor, Padding,
+    ShapeError, TriMesh,
 };
 
 use super::{
     error::BuildToolError,
     meshes::{Meshes, transformed},
+    problem::ShapeProblem,
     profile::profile,
 };
-use crate::recipe::{MeshTool, RecipeError, RecipeProblem, Tool, ToolShape};
+use crate::recipe::{MeshTool, RecipeError, Tool, ToolShape};
 
-/// Grid cells across the support, at least. With fewer, the kinks of the interpolant show in the field.
+/// Grid cells across the support, at least. With fewer, the kinks of the interpolant show in the
+/// field.
 const CELLS_PER_SUPPORT: f64 = 6.0;
 
 /// Builds one tool, outside any recipe, and returns it with warnings about its description.
 ///
-/// The shape of a mesh tool is looked up in `meshes`, and its distance is sampled on a grid, which takes from milliseconds
-/// to seconds.
+/// The shape of a mesh tool is looked up in `meshes`, and its distance is sampled on a grid, which
+/// takes from milliseconds to seconds.
 ///
 /// # Errors
 /// [`BuildToolError`]. Its keys are those of a recipe in which the tool is called `name`.
+///
+/// ```
+/// use isochore_mesh::NoProgress;
+/// use isochore_sculpt::{Meshes, build_tool, recipe::{Sphere, Tool, ToolShape}};
+///
+/// let shape = ToolShape::Sphere(Sphere { radius: 0.4 });
+/// let ball = Tool { shape, support: 0.3, profile: Default::default(), free_form: 0.0 };
+/// let (tool, warnings) = build_tool("ball", &ball, &Meshes::new(), &NoProgress)?;
+/// assert_eq!(tool.support(), 0.3);
+/// assert!(warnings.is_empty());
+/// # Ok::<(), isochore_sculpt::BuildToolError>(())
+/// ```
 pub fn build_tool(
     name: &str,
     description: &Tool,
@@ -49,13 +64,12 @@ impl<'a> ToolBuilder<'a> {
         Self { meshes, monitor, warnings: Vec::new() }
     }
 
-    /// `reach`: distance from the shape up to which its distance is sampled, at least the support; model units.
+    /// `reach`: distance from the shape up to which its distance is sampled, at least the support;
+    /// model units.
     pub(super) fn build(&mut self, name: &str, tool: &Tool, reach: f64) -> Result<field::Tool, BuildToolError> {
-        let distance: Arc<dyn Distance> = match &tool.shape {
-            ToolShape::Mesh(shape) => Arc::new(self.distance_field(name, shape, tool.support, reach)?),
-            shape => {
-                analytic_distance(shape).map_err(|problem| RecipeError::new(&format!("tools.{name}.shape"), problem))?
-            }
+        let distance: Arc<dyn Distance> = match shape_source(name, tool)? {
+            ShapeSource::Mesh(shape) => Arc::new(self.distance_field(name, shape, tool.support, reach)?),
+            ShapeSource::ClosedForm(distance) => distance,
         };
         field::Tool::new(distance, tool.support, profile(tool.profile))
             .and_then(|built| built.with_free_form(tool.free_form))
@@ -93,11 +107,11 @@ impl<'a> ToolBuilder<'a> {
     }
 }
 
-/// Bounds of a tool's shape in tool coordinates.
-pub(super) fn shape_bounds(tool: &Tool, meshes: &Meshes) -> Result<Aabb, BuildToolError> {
-    Ok(match &tool.shape {
-        ToolShape::Mesh(shape) => tool_mesh(meshes, shape)?.bounds(),
-        shape => analytic_distance(shape).map_err(|problem| RecipeError::new("tools", problem))?.bounds(),
+/// Bounds of the shape of the tool `name`, in tool coordinates.
+pub(super) fn shape_bounds(name: &str, tool: &Tool, meshes: &Meshes) -> Result<Aabb, BuildToolError> {
+    Ok(match shape_source(name, tool)? {
+        ShapeSource::Mesh(shape) => tool_mesh(meshes, shape)?.bounds(),
+        ShapeSource::ClosedForm(distance) => distance.bounds(),
     })
 }
 
@@ -112,14 +126,18 @@ fn least_resolution(mesh: &TriMesh, support: f64) -> f64 {
     (CELLS_PER_SUPPORT * mesh.bounds().size().max_element() / support).ceil()
 }
 
-/// Reason why a recipe alone cannot build the tool of a host.
-const HOST_SHAPE: &str = "is a shape of the program that logged it, which a recipe does not contain; replay it in a session of \
-                          that program, which supplies the tool";
+/// The two kinds of shapes.
+enum ShapeSource<'a> {
+    Mesh(&'a MeshTool),
+    ClosedForm(Arc<dyn Distance>),
+}
 
-/// Closed-form distance of every shape except those of meshes and hosts.
-fn analytic_distance(shape: &ToolShape) -> Result<Arc<dyn Distance>, RecipeProblem> {
+fn shape_source<'a>(name: &str, tool: &'a Tool) -> Result<ShapeSource<'a>, RecipeError<ShapeProblem>> {
     let vector = DVec3::from_array;
-    let distance: Result<Arc<dyn Distance>, mesh::ShapeError> = match shape {
+    let failed = |problem: ShapeProblem| RecipeError::new(&format!("tools.{name}.shape"), problem);
+    let distance: Result<Arc<dyn Distance>, ShapeError> = match &tool.shape {
+        ToolShape::Mesh(shape) => return Ok(ShapeSource::Mesh(shape)),
+        ToolShape::Host(_) => return Err(failed(ShapeProblem::Host)),
         ToolShape::Sphere(shape) => mesh::Sphere::new(shape.radius).map(|distance| Arc::new(distance) as _),
         ToolShape::Capsule(shape) => {
             mesh::Capsule::new(shape.radius, shape.half_length).map(|distance| Arc::new(distance) as _)
@@ -131,8 +149,7 @@ fn analytic_distance(shape: &ToolShape) -> Result<Arc<dyn Distance>, RecipeProbl
         ToolShape::Ellipsoid(shape) => {
             mesh::Ellipsoid::new(vector(shape.radii)).map(|distance| Arc::new(distance) as _)
         }
-        ToolShape::Mesh(_) => return Err(RecipeProblem::Other("a mesh has no distance in closed form".to_owned())),
-        ToolShape::Host(_) => return Err(RecipeProblem::Other(HOST_SHAPE.to_owned())),
     };
-    distance.map_err(|error| RecipeProblem::Other(error.to_string()))
+    let distance = distance.map_err(|error| failed(error.into()))?;
+    Ok(ShapeSource::ClosedForm(distance))
 }

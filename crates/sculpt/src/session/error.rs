@@ -3,7 +3,10 @@
 use isochore_field::StrokeError;
 use isochore_mesh::{BvhError, EditMeshError, MeshError};
 
-use crate::recipe::RecipeError;
+use crate::{
+    recipe::{InvalidRecipe, NumberProblem, RecipeError},
+    scene::MaskProblem,
+};
 
 /// Errors of [`Session::open`](super::Session::open).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -29,7 +32,10 @@ pub enum OpenError {
     },
     /// An option is invalid.
     #[error(transparent)]
-    Options(#[from] RecipeError),
+    Options(#[from] RecipeError<InvalidRecipe>),
+    /// The mask does not fit the mesh.
+    #[error(transparent)]
+    Mask(#[from] RecipeError<MaskProblem>),
 }
 
 /// Errors of a session. A failed call leaves the session unchanged, with one exception: a move that
@@ -45,7 +51,7 @@ pub enum SessionError {
     NoStroke,
     /// A key contains NaN or infinity, or its rotation has a zero axis.
     #[error(transparent)]
-    Pose(#[from] RecipeError),
+    Pose(#[from] RecipeError<NumberProblem>),
     /// The tool cannot move from the last pose to this one.
     #[error(transparent)]
     Stroke(#[from] StrokeError),

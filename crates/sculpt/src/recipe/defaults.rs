@@ -1,0 +1,6 @@
+//! Keys that are omitted when a recipe is written.
+
+/// Whether `value` is what a reader assumes if the key is missing.
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
