@@ -1,4 +1,20 @@
-//! Divergence-free velocity fields: tools, jointed tools, rings, strips and regions, and the masks over them.
+//! Divergence-free velocity fields and the masks that restrict them.
+//!
+//! Terms:
+//!
+//! - The *full motion* is the velocity that a shape imposes on the material inside it.
+//! - The *support* is the layer around a shape in which its field is nonzero.
+//! - The *weight* s is the fraction of the full motion: one in the core, zero beyond the support.
+//! - The *gauge* is the choice among the potentials A that have the full motion as their curl.
+//!
+//! Every field is the curl of a vector potential s A, so it is divergence-free:
+//!
+//! ```text
+//! V = curl(s A) = s curl A + ∇s × A
+//! ```
+//!
+//! A [`Field`] is evaluated at one instant; a [`MovingField`] supplies it for times from 0 to 1.
+//! Sources are named in the module of each field.
 
 pub(crate) mod field;
 pub(crate) mod jointed_tool;

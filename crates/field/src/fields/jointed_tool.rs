@@ -1,21 +1,28 @@
-//! A jointed tool: rigid bones that turn about their joints, and the one field of all of them.
+//! Jointed tools: rigid bones that rotate about their joints, with one field for all of them.
 //!
 //! ```text
 //! V = curl(g(u) [A₀ + Σₖ Wₖ ΔAₖ + ∇(Σᵢ wᵢ χᵢ)])
 //! ```
 //!
-//! u is the smooth minimum of the scaled distances dᵢ/Rᵢ to the bones, wᵢ a partition of unity that gives every bone its
-//! own surface, and Wₖ the sum of wᵢ over the bones that joint k carries. A₀ is the potential of the first bone's motion, ΔAₖ
-//! that of the turn about joint k, in a gauge that vanishes to second order there, so that ∇Wₖ × ΔAₖ stays small where Wₖ
-//! changes; χᵢ moves the gauge of each part of bone i's motion to the middle of all bones that the part moves, which cuts the
-//! flow back around them. Along the axis of a turn that middle is the parent's, so that fingers side by side which bend alike
-//! have one potential, and the material between them goes with them. Summing the fields of the bones instead would move what
-//! two of them share at twice the speed; blending their velocities would be no curl.
+//! - u is the smooth minimum of the scaled distances dᵢ/Rᵢ to the bones.
+//! - wᵢ is a partition of unity in which each bone has weight one on its own surface.
+//! - Wₖ is the sum of wᵢ over the bones that joint k carries.
+//! - A₀ is the potential of the motion of the first bone.
+//! - ΔAₖ is the potential of the rotation about joint k, in a gauge that vanishes to second order
+//!   at the joint, so that ∇Wₖ × ΔAₖ is small where Wₖ changes.
+//! - χᵢ shifts the gauge of each part of the motion of bone i to the middle of all bones that the
+//!   part moves, which reduces the return flow around them.
 //!
-//! The distances belong to the bones and move with them: they are never sampled anew.
+//! Along the axis of a rotation, the middle of the parent is used instead. Neighboring fingers that
+//! bend alike then have one potential, so the material between them moves with them.
 //!
-//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, section 11.2.6 (the sum of the fields of elements),
-//! with potentials blended in place of the sum.
+//! Two simpler constructions fail. In the sum of the fields of the bones, material within two
+//! supports moves at twice the speed. A blend of their velocities is not a curl.
+//!
+//! The distance of each bone moves with it and is never resampled.
+//!
+//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, section 11.2.6 (sum of
+//! the fields of elements); this module blends potentials instead.
 
 mod field;
 mod motion;
@@ -34,8 +41,9 @@ use crate::fields::{MovingField, Pose, Profile, Tool};
 use motion::PostureChange;
 use partition::Blend;
 
-/// Width of the smooth minimum, as a share of the thinnest bone's radius. Larger: the union bulges at the joints and its
-/// support reaches farther. Smaller: the crease between two bones shows in the field.
+/// Width of the smooth minimum, relative to the radius of the thinnest bone. Larger: the union
+/// bulges at the joints and its support reaches farther. Smaller: the crease between two bones
+/// shows in the field.
 const CREASE_WIDTH: f64 = 0.8;
 
 /// A rigid part of a jointed tool.
@@ -43,24 +51,56 @@ const CREASE_WIDTH: f64 = 0.8;
 pub struct Bone {
     /// Shape, support and profile.
     pub tool: Arc<Tool>,
-    /// World from tool at rest.
+    /// World from tool, at rest.
     pub rest: Pose,
-    /// The point that the bone turns about, in the world at rest.
+    /// Point that the bone rotates about, in world coordinates at rest.
     pub joint: DVec3,
-    /// Index of the bone that carries the joint; none for the first bone of all, whose joint the whole tool carries.
+    /// Index of the bone that carries the joint; `None` for the root bone, which carries all
+    /// others.
     pub parent: Option<usize>,
 }
 
-/// How far the bones of a jointed tool are turned.
+/// Pose of a jointed tool: its placement and the rotations of its bones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posture {
-    /// Where the whole tool is: the world now from the world at rest.
+    /// Placement of the whole tool: current world position from the position at rest.
     pub root: Pose,
-    /// The turn of each bone about its joint, past its parent, in the axes of the rest.
+    /// Rotation of each bone about its joint relative to its parent, in the axes of the tool at
+    /// rest.
     pub turns: Vec<DQuat>,
 }
 
-/// Bones that hang together in a tree.
+/// A tree of bones.
+///
+/// # Examples
+/// ```
+/// use std::sync::Arc;
+///
+/// use glam::{DQuat, DVec3};
+/// use isochore_field::{Bone, JointedTool, Pose, Posture, Profile, Tool, rotation_from_vector};
+/// use isochore_mesh::Capsule;
+///
+/// let shape = Arc::new(Capsule::new(0.15, 0.25).unwrap());
+/// let tool = Arc::new(Tool::new(shape, 0.25, Profile::Quintic).unwrap());
+/// let bone = |z: f64, joint: f64, parent| Bone {
+///     tool: Arc::clone(&tool),
+///     rest: Pose::at(DVec3::Z * z),
+///     joint: DVec3::Z * joint,
+///     parent,
+/// };
+/// let finger = JointedTool::new(vec![bone(-0.25, -0.5, None), bone(0.25, 0.0, Some(0))])?;
+///
+/// let posture = |bend: f64| Posture {
+///     root: Pose::IDENTITY,
+///     turns: vec![DQuat::IDENTITY, rotation_from_vector(DVec3::X * bend)],
+/// };
+/// let motions = Arc::new(finger).motions(&[posture(0.0), posture(1.0)])?;
+///
+/// // The second bone rotates about the joint at the origin by one radian.
+/// let velocity = motions[0].at(0.0).velocity(DVec3::Z * 0.4);
+/// assert!(velocity.distance(-0.4 * DVec3::Y) < 1e-12);
+/// # Ok::<(), isochore_field::JointedToolError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct JointedTool {
     bones: Vec<Bone>,
@@ -68,24 +108,32 @@ pub struct JointedTool {
     order: Vec<usize>,
     /// Half the shortest extent of each bone.
     radii: Vec<f64>,
-    /// How far each bone's support reaches beyond its surface, the bulges at joints included.
+    /// Distance that each bone's support reaches beyond its surface, including the bulges at
+    /// joints.
     supports: Vec<f64>,
     profile: Profile,
     /// Width of the smooth minimum of the scaled distances.
     crease: f64,
-    /// The widest blend of two bones.
+    /// Largest width of a blend between two bones.
     widest: f64,
-    /// Bones farther than this change nothing.
+    /// Bones farther from a point than this do not influence it.
     influence: f64,
-    /// No scaled distance grows faster than this.
+    /// Upper bound on the gradient of the scaled distances.
     steepness: f64,
 }
 
 impl JointedTool {
-    /// A tool of `bones`.
+    /// A tool of `bones`, which form one tree.
     ///
     /// # Errors
-    /// [`JointedToolError`]: bones that do not form one tree, profiles that differ, a sampled distance that ends too early.
+    /// - [`NoFirstBone`](JointedToolError::NoFirstBone),
+    ///   [`TwoFirstBones`](JointedToolError::TwoFirstBones),
+    ///   [`NoParent`](JointedToolError::NoParent) or [`Circle`](JointedToolError::Circle) if the
+    ///   bones do not form one tree.
+    /// - [`JointedToolError::Profile`] if the profiles differ.
+    /// - [`JointedToolError::NotFinite`] if a rest position or a joint is not finite.
+    /// - [`JointedToolError::Reach`] if the sampled distance of a bone ends before
+    ///   [`least_reach`](Self::least_reach).
     pub fn new(bones: Vec<Bone>) -> Result<Self, JointedToolError> {
         let order = parents_first(&bones)?;
         let profile = bones[order[0]].tool.profile();
@@ -112,8 +160,8 @@ impl JointedTool {
         Ok(Self { bones, order, radii, supports, profile, crease, widest, influence, steepness })
     }
 
-    /// How far the distances of all bones must be known for a jointed tool of bones with these bounds of their shapes, in
-    /// tool coordinates, and supports.
+    /// Distance beyond the surface, model units, up to which the distance of every bone must be
+    /// known, from the bounds of the shape, in tool coordinates, and the support of each bone.
     pub fn least_reach(shapes: impl IntoIterator<Item = (Aabb, f64)> + Clone) -> f64 {
         let shapes = shapes.into_iter().map(|(bounds, support)| (radius(bounds), support));
         let (thickest, thinnest, widest_support) =
@@ -128,12 +176,14 @@ impl JointedTool {
         &self.bones
     }
 
-    /// The fields between neighboring `keys`, in each of which the whole moves along a screw and every bone turns about its
-    /// joint at a constant rate, by less than half a turn.
+    /// The fields of the motions between successive `keys`. In each, the whole tool moves along a
+    /// screw, and every bone rotates about its joint at a constant rate, by less than half a turn.
     ///
     /// # Errors
-    /// [`JointedToolError`]: fewer than two keys, a posture of another number of bones, a bone or the whole turned by exactly
-    /// half a turn between two keys.
+    /// - [`JointedToolError::TooFewKeys`] for fewer than two keys.
+    /// - [`JointedToolError::Turns`] if a posture does not have one rotation for each bone.
+    /// - [`JointedToolError::HalfTurn`] if a bone or the whole tool rotates by exactly 180° between
+    ///   two keys.
     pub fn motions(self: &Arc<Self>, keys: &[Posture]) -> Result<Vec<Arc<dyn MovingField>>, JointedToolError> {
         if keys.len() < 2 {
             return Err(JointedToolError::TooFewKeys(keys.len()));
@@ -141,11 +191,11 @@ impl JointedTool {
         if let Some(key) = keys.iter().position(|key| key.turns.len() != self.bones.len()) {
             return Err(JointedToolError::Turns { key, turns: keys[key].turns.len(), bones: self.bones.len() });
         }
-        let ways = keys.windows(2).enumerate();
-        ways.map(|(key, way)| Ok(Arc::new(PostureChange::new(self, &way[0], &way[1], key)?) as _)).collect()
+        let pairs = keys.windows(2).enumerate();
+        pairs.map(|(key, pair)| Ok(Arc::new(PostureChange::new(self, &pair[0], &pair[1], key)?) as _)).collect()
     }
 
-    /// How bones `a` and `b` blend.
+    /// Blend between the bones `a` and `b`.
     fn blend(&self, a: usize, b: usize) -> Blend {
         let length = self.radii[a].min(self.radii[b]);
         if self.bones[a].parent == Some(b) || self.bones[b].parent == Some(a) {
@@ -161,7 +211,7 @@ fn radius(bounds: Aabb) -> f64 {
     0.5 * bounds.size().min_element()
 }
 
-/// The bones in an order in which each follows its parent.
+/// Indices of the bones, ordered so that each follows its parent.
 fn parents_first(bones: &[Bone]) -> Result<Vec<usize>, JointedToolError> {
     let mut roots = (0..bones.len()).filter(|&bone| bones[bone].parent.is_none());
     let Some(first) = roots.next() else { return Err(JointedToolError::NoFirstBone) };
@@ -184,76 +234,77 @@ fn parents_first(bones: &[Bone]) -> Result<Vec<usize>, JointedToolError> {
     }
 }
 
-/// Why bones and postures make no field.
+/// Errors when constructing a [`JointedTool`] or its motions.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum JointedToolError {
-    /// Every bone has a parent, or there is no bone.
-    #[error("no bone is without a parent, so that nothing carries the others")]
+    /// Every bone has a parent, or the list of bones is empty.
+    #[error("every bone has a parent; one bone must have none, to carry all others")]
     NoFirstBone,
-    /// Two bones without a parent.
-    #[error("bones {first} and {bone} both lack a parent; only one bone can carry all others")]
+    /// Two bones have no parent.
+    #[error("bones {first} and {bone} both have no parent; only one bone can carry all others")]
     TwoFirstBones {
-        /// The first of them, from 0.
+        /// Index of the first of them, from 0.
         first: usize,
-        /// The second.
+        /// Index of the second, from 0.
         bone: usize,
     },
     /// The parent of a bone does not exist.
-    #[error("the parent of bone {bone} does not exist")]
+    #[error("the parent of bone {bone} does not exist; give the index of a bone, from 0")]
     NoParent {
-        /// Which bone, from 0.
+        /// Index of the bone, from 0.
         bone: usize,
     },
-    /// Following the parents of a bone leads round in a circle.
-    #[error("following the parents of bone {bone} leads round in a circle")]
+    /// The chain of parents of a bone is a cycle.
+    #[error("the chain of parents of bone {bone} is a cycle; it must end at a bone without a parent")]
     Circle {
-        /// Which bone, from 0.
+        /// Index of the bone, from 0.
         bone: usize,
     },
-    /// The profile of a bone is not that of the first bone.
-    #[error("the profile of bone {bone} differs from that of the bone that carries all others")]
+    /// The profile of a bone differs from that of the first bone.
+    #[error("the profile of bone {bone} differs from that of the bone that carries all others; all must be equal")]
     Profile {
-        /// Which bone, from 0.
+        /// Index of the bone, from 0.
         bone: usize,
     },
-    /// A coordinate of a bone is infinite or not a number.
-    #[error("the place and the joint of bone {bone} must be finite")]
+    /// A coordinate of a bone is infinite or NaN.
+    #[error("the rest position and the joint of bone {bone} must be finite")]
     NotFinite {
-        /// Which bone, from 0.
+        /// Index of the bone, from 0.
         bone: usize,
     },
     /// The sampled distance of a bone ends where other bones still blend with it.
-    #[error("the distance of bone {bone} is sampled up to {reach} beyond its surface; {least} is needed")]
+    #[error("the distance of bone {bone} is sampled up to {reach} beyond its surface; sample it up to {least}")]
     Reach {
-        /// Which bone, from 0.
+        /// Index of the bone, from 0.
         bone: usize,
-        /// Reach needed, model units.
+        /// Required reach, model units.
         least: f64,
-        /// Reach there is.
+        /// Reach of the samples, model units.
         reach: f64,
     },
-    /// A motion needs two postures at least.
+    /// A motion needs at least two postures.
     #[error("the motion needs at least two postures, not {0}")]
     TooFewKeys(usize),
-    /// A posture turns another number of bones than there are.
-    #[error("posture {key} has {turns} turns for {bones} bones")]
+    /// The number of rotations in a posture differs from the number of bones.
+    #[error("posture {key} has {turns} rotations for {bones} bones; give one for each bone")]
     Turns {
         /// Index of the posture, from 0.
         key: usize,
-        /// Turns it has.
+        /// Number of rotations given.
         turns: usize,
-        /// Bones there are.
+        /// Number of bones.
         bones: usize,
     },
-    /// A bone, or the whole, turned by exactly half a turn.
+    /// A bone or the whole tool rotates by exactly half a turn.
     #[error(
-        "between postures {key} and {} the turn of {} is exactly 180°, so that the way is open; put a posture between them",
-        .key + 1, .bone.map_or("the whole".to_owned(), |bone| format!("bone {bone}"))
+        "between postures {key} and {} the rotation of {} is exactly 180°, so its direction is ambiguous; add a posture \
+         between them",
+        .key + 1, .bone.map_or("the whole tool".to_owned(), |bone| format!("bone {bone}"))
     )]
     HalfTurn {
-        /// Index of the first of the two, from 0.
+        /// Index of the first of the two postures, from 0.
         key: usize,
-        /// Which bone, from 0; none for the whole.
+        /// Index of the bone, from 0; `None` for the whole tool.
         bone: Option<usize>,
     },
 }

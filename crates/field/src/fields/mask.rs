@@ -1,14 +1,16 @@
-//! Masks: where the flow is held back, and planes it is symmetric about.
+//! Masks, which hold material in place, and planes about which the flow is symmetric.
 //!
-//! A mask is a smooth scalar m of space, zero where the material is held and one where it is free. It multiplies the vector
-//! potential P, never the velocity V:
+//! A mask is a smooth function m of space: zero where the material is held, one where it is free.
+//! It multiplies the vector potential P, never the velocity V:
 //!
 //! ```text
 //! V′ = curl(m P) = m V + ∇m × P
 //! ```
 //!
-//! so that the masked field is divergence-free like any other curl. Where m is zero around a point, so is V′, and the point
-//! keeps its bits.
+//! As a curl, the masked field is divergence-free. If m is zero in a neighborhood of a point, so is
+//! V′, and the coordinates of the point keep their bits.
+//!
+//! The mask is the product of the factors of pins and painted vertices over all mirror images.
 
 pub(crate) mod masked_field;
 mod mirror_plane;
@@ -25,11 +27,24 @@ pub use vertex_mask::VertexMask;
 
 use crate::fields::ScalarBlock;
 
-/// Normals of two mirror planes may be this far from perpendicular, as the cosine of their angle. Larger lets the second plane
-/// visibly break the symmetry about the first; smaller refuses normals typed with six digits.
+/// Largest deviation of two mirror planes from perpendicular, as the cosine of the angle between
+/// their normals. Larger: the second plane visibly breaks the symmetry about the first. Smaller:
+/// rejects normals typed with six digits.
 const PERPENDICULAR: f64 = 1e-6;
 
-/// What holds the flow back, fixed in the space of the target at rest: pins, a mask painted on vertices, and mirror planes.
+/// Pins, a mask painted on vertices, and mirror planes, fixed in the space of the target at rest.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_field::{Mask, Pin};
+///
+/// let pin = Pin::new(DVec3::ZERO, 0.5, 0.2)?;
+/// let mask = Mask::new(vec![pin], None, Vec::new())?;
+/// assert!(mask.is_held(DVec3::X * 0.4));
+/// assert!(!mask.is_held(DVec3::X));
+/// # Ok::<(), isochore_field::MaskError>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Mask {
     pins: Vec<Pin>,
@@ -38,10 +53,11 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// A mask of all that is given; pins and painted vertices also act where the mirrors show them.
+    /// A mask of pins, painted vertices and mirror planes. The mirror images of pins and painted
+    /// vertices also hold.
     ///
     /// # Errors
-    /// [`MaskError::NotPerpendicular`] for mirrors that are not perpendicular to each other.
+    /// [`MaskError::NotPerpendicular`] if two mirror planes are not perpendicular to each other.
     pub fn new(pins: Vec<Pin>, vertices: Option<VertexMask>, mirrors: Vec<MirrorPlane>) -> Result<Self, MaskError> {
         for (second, plane) in mirrors.iter().enumerate() {
             let is_slanted = |other: &MirrorPlane| other.normal().dot(plane.normal()).abs() > PERPENDICULAR;
@@ -52,42 +68,42 @@ impl Mask {
         Ok(Self { pins, vertices, mirrors })
     }
 
-    /// Whether the mask leaves every field as it is.
+    /// Whether the mask leaves every field unchanged.
     pub fn is_empty(&self) -> bool {
         !self.holds() && self.mirrors.is_empty()
     }
 
-    /// Whether a point is held so that no stroke moves it.
+    /// Whether a point is held, so that no stroke moves it.
     pub fn is_held(&self, point: DVec3) -> bool {
         self.holds() && self.symmetric_factor(&self.mirrors, point).value == 0.0
     }
 
-    /// Whether anything is held, mirrors apart.
+    /// Whether the mask has pins or painted vertices.
     pub(crate) fn holds(&self) -> bool {
         !self.pins.is_empty() || self.vertices.is_some()
     }
 
-    /// The planes that fields are made symmetric about.
+    /// Planes about which fields are made symmetric.
     pub(crate) fn mirrors(&self) -> &[MirrorPlane] {
         &self.mirrors
     }
 
-    /// m at those of `points` that are wanted, into their lanes.
-    pub(crate) fn evaluate_into(&self, points: &PointBlock, is_wanted: [bool; LANES], out: &mut ScalarBlock) {
-        for lane in (0..LANES).filter(|&lane| is_wanted[lane]) {
+    /// Writes m at the `points` whose lanes are active; other lanes of `out` do not change.
+    pub(crate) fn evaluate_into(&self, points: &PointBlock, is_active: [bool; LANES], out: &mut ScalarBlock) {
+        for lane in (0..LANES).filter(|&lane| is_active[lane]) {
             let factor = self.symmetric_factor(&self.mirrors, points.get(lane));
             out.value[lane] = factor.value;
             out.gradient.set(lane, factor.gradient);
         }
     }
 
-    /// The smallest length over which m changes.
+    /// Smallest length over which m varies.
     pub(crate) fn feature_size(&self) -> f64 {
         let pins = self.pins.iter().map(Pin::support);
         pins.chain(self.vertices.as_ref().map(VertexMask::feature_size)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The smallest length over which m changes in a ball; infinite where m is one all over it.
+    /// Smallest length over which m varies within a ball; infinite if m is one in the whole ball.
     pub(crate) fn feature_size_near(&self, center: DVec3, radius: f64) -> f64 {
         let mut size = f64::INFINITY;
         for image in images(&self.mirrors, center) {
@@ -98,14 +114,14 @@ impl Mask {
         size
     }
 
-    /// Points where m changes, to look for the speed that a field gets there.
+    /// Points where m varies, at which the speed of a masked field is sampled.
     pub(crate) fn probes(&self) -> Vec<DVec3> {
         let probes = self.pins.iter().flat_map(Pin::probes);
         let probes = probes.chain(self.vertices.iter().flat_map(VertexMask::probes));
         probes.flat_map(|probe| images(&self.mirrors, probe)).collect()
     }
 
-    /// The product over all mirror images of `point`.
+    /// Product of the factors at `point` and at all its mirror images.
     fn symmetric_factor(&self, mirrors: &[MirrorPlane], point: DVec3) -> Factor {
         let Some((plane, others)) = mirrors.split_last() else { return self.factor(point) };
         let image = self.symmetric_factor(others, plane.reflect_point(point));
@@ -142,22 +158,23 @@ impl Factor {
     }
 }
 
-/// Why a mask cannot be.
+/// Errors when constructing a [`Mask`] or its parts.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum MaskError {
-    /// A number is infinite or not a number.
+    /// A number is infinite or NaN.
     #[error("{0} must be finite")]
     NotFinite(&'static str),
-    /// The radius of a pin is negative.
-    #[error("the radius of a pin must not be negative, as {0} is")]
+    /// The radius of a pin is negative or not finite.
+    #[error("the radius of a pin must be zero or a positive length, not {0}")]
     Radius(f64),
-    /// A pin has no room to fade.
+    /// The support of a pin is not a positive length.
     #[error("the support of a pin must be a positive length, not {0}")]
     Support(f64),
-    /// A mirror plane has no direction.
-    #[error("the normal of a mirror plane must have a length")]
+    /// The normal of a mirror plane is the zero vector.
+    #[error("the normal of a mirror plane must be nonzero")]
     ZeroNormal,
-    /// Reflections about planes at other angles make more planes, without end for most angles.
+    /// Two mirror planes are not perpendicular. Reflections about such planes generate further
+    /// planes, for most angles infinitely many.
     #[error("mirror planes {first} and {second}, counted from 0, are not perpendicular to each other")]
     NotPerpendicular {
         /// Index of the first plane.
@@ -165,34 +182,34 @@ pub enum MaskError {
         /// Index of the second plane.
         second: usize,
     },
-    /// There is not one weight for each vertex.
-    #[error("there are {found} weights for {expected} vertices")]
+    /// The number of weights differs from the number of vertices.
+    #[error("{found} weights are given for {expected} vertices; give one for each vertex")]
     WeightCount {
-        /// Weights given.
+        /// Number of weights given.
         found: usize,
-        /// Vertices of the mesh.
+        /// Number of vertices of the mesh.
         expected: usize,
     },
-    /// A weight beyond its range.
-    #[error("the weight of vertex {vertex} is {weight}, not a number from 0, free, to 1, held")]
+    /// A weight is out of range.
+    #[error("the weight of vertex {vertex} is {weight}; give a number from 0 (free) to 1 (held)")]
     Weight {
         /// Index of the vertex.
         vertex: usize,
-        /// Its weight.
+        /// Weight given.
         weight: f64,
     },
-    /// The vertex mask has no room to fade.
+    /// The fade of a vertex mask is not a positive length.
     #[error("the fade of a vertex mask must be a positive length, not {0}")]
     Fade(f64),
-    /// Without edges there is no length to fade over.
-    #[error("the mesh has no edges to take the fade of its vertex mask from; give the fade as a length")]
+    /// No fade is given, and the mesh has no edges from which to derive one.
+    #[error("the fade of the vertex mask cannot be derived, as the mesh has no edges; give the fade as a length")]
     NoEdges,
-    /// The fade is so short that too many samples would have to stand for the surface.
+    /// The fade is so short that the surface needs too many samples.
     #[error("a fade of {fade} needs more than {most} samples of the surface; choose a longer one")]
     TooManySamples {
-        /// The fade.
+        /// Fade given.
         fade: f64,
-        /// The most samples there may be.
+        /// Largest allowed number of samples.
         most: usize,
     },
     /// The mesh has an index out of range or a coordinate that is not finite.

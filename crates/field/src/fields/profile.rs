@@ -1,15 +1,30 @@
-//! Profiles: how a field fades from the tool's surface to the edge of its support.
+//! Profiles: how a field fades from the surface of a tool to the edge of its support.
 //!
-//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, chapter 11; W. von Funck, H. Theisel,
-//! H.-P. Seidel, *Vector Field Based Shape Deformations*, 2006 (the quartic).
+//! A profile is a function g(u) of the scaled distance u = d/R, with the signed distance d from the
+//! surface and the support R.
+//!
+//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, chapter 11; W. von
+//! Funck, H. Theisel, H.-P. Seidel, *Vector Field Based Shape Deformations*, 2006 (the quartic).
 
 use std::{fmt, str::FromStr};
 
 use isochore_mesh::LANES;
 
-/// A profile g(u) of the scaled distance u = d/R: what surrounds the tool moves with g of the tool's speed.
+/// A profile g(u) of the scaled distance u = d/R: the weight of the motion at distance d.
 ///
-/// g and its derivative are exactly zero for u ≥ 1. Quintic, septic and quartic are exactly one for u ≤ 0: a rigid core.
+/// g and its derivative are exactly zero for u ≥ 1. Quintic, septic and quartic are exactly one for
+/// u ≤ 0, so the inside of the tool is a rigid core.
+///
+/// # Examples
+/// ```
+/// use isochore_field::Profile;
+///
+/// let profile: Profile = "quintic".parse()?;
+/// assert_eq!(profile.evaluate(0.0).0, 1.0);
+/// assert_eq!(profile.evaluate(0.5), (0.5, -1.875));
+/// assert_eq!(profile.evaluate(1.0).0, 0.0);
+/// # Ok::<(), isochore_field::UnknownProfile>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Profile {
     /// 1 − 10u³ + 15u⁴ − 6u⁵: twice continuously differentiable everywhere.
@@ -19,25 +34,26 @@ pub enum Profile {
     Septic,
     /// 1 − 4u³ + 3u⁴: one minus von Funck's blend.
     Quartic,
-    /// (1−u)³(1+u), continued into the tool as far as u = −½: what is touched comes close to the surface exponentially fast.
-    /// A tool thinner than the support has no room for that: what lies inside from the start is torn along its medial axis.
+    /// (1−u)³(1+u), continued into the tool down to u = −½ and constant below: material in contact
+    /// approaches the surface exponentially fast. A tool thinner than the support does not reach u
+    /// = −½, and its field tears material inside it along its medial axis.
     Contact,
-    /// (1−|u|)²: kinked on the surface, as in the thesis.
+    /// (1−|u|)²: has a kink on the surface, as in the thesis.
     Thesis,
-    /// The square of the quintic; see [`squared`](Self::squared).
+    /// Square of the quintic; see [`squared`](Self::squared).
     QuinticSquared,
-    /// The square of the septic.
+    /// Square of the septic.
     SepticSquared,
     /// (1 − 4u³ + 3u⁴)²: von Funck's product form written as a curl.
     QuarticSquared,
-    /// The square of the contact profile.
+    /// Square of the contact profile.
     ContactSquared,
     /// (1−u)² with a rigid core.
     #[cfg(test)]
     Quad,
 }
 
-/// Values of a profile and of its derivative with respect to u, for a block of points.
+/// Values g(u) and derivatives dg/du of a profile for a block of points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ProfileBlock {
     pub(crate) value: [f64; LANES],
@@ -45,10 +61,10 @@ pub(crate) struct ProfileBlock {
 }
 
 impl Profile {
-    /// Every profile that a recipe may name.
+    /// Profiles that a recipe can name.
     pub const ALL: [Self; 5] = [Self::Quintic, Self::Septic, Self::Quartic, Self::Contact, Self::Thesis];
 
-    /// The name in recipes.
+    /// Name in recipes.
     pub fn name(self) -> &'static str {
         match self {
             Self::Quintic => "quintic",
@@ -65,8 +81,9 @@ impl Profile {
         }
     }
 
-    /// g², for a field ∇(g p) × ∇(g q), which is the curl of g² ½ (p ∇q − q ∇p). None where g has a kink, or is a square
-    /// already.
+    /// The profile g², for the field ∇(g p) × ∇(g q), which is the curl of g² ½ (p ∇q − q ∇p).
+    ///
+    /// Returns `None` if g has a kink or is already a square.
     pub fn squared(self) -> Option<Self> {
         match self {
             Self::Quintic => Some(Self::QuinticSquared),
@@ -77,7 +94,7 @@ impl Profile {
         }
     }
 
-    /// g(u) and dg/du.
+    /// Values g(u) and dg/du.
     pub fn evaluate(self, u: f64) -> (f64, f64) {
         match self {
             Self::Quintic => quintic(u),
@@ -97,10 +114,10 @@ impl Profile {
         }
     }
 
-    /// [`evaluate`](Self::evaluate) for the distances of a block and the support radius R.
+    /// Evaluates the profile for the distances of a block, with the support R.
     #[inline(always)]
     pub(crate) fn evaluate_block(self, distances: &[f64; LANES], support: f64) -> ProfileBlock {
-        // One loop a profile, so that the choice is made once a block and each loop becomes vector code.
+        // One loop per profile: the branch is taken once per block, and each loop vectorizes.
         match self {
             Self::Quintic => lanes(distances, support, quintic),
             Self::Septic => lanes(distances, support, septic),
@@ -174,7 +191,7 @@ impl fmt::Display for Profile {
     }
 }
 
-/// No profile has this name.
+/// Error when parsing a name that is not the name of a profile.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown profile `{0}`; the profiles are quintic, septic, quartic, contact and thesis")]
 pub struct UnknownProfile(pub String);
@@ -199,14 +216,15 @@ mod tests {
                 let h = 1e-6;
                 let expected = (profile.evaluate(u + h).0 - profile.evaluate(u - h).0) / (2.0 * h);
                 let (_, slope) = profile.evaluate(u);
-                // Truncation h²|g‴|/6 < 1e-10, and the roundings of polynomials whose coefficients sum to 200, over h.
+                // Truncation h²|g‴|/6 < 1e-10, plus rounding of polynomials whose coefficients sum
+                // to 200, over h.
                 assert!((slope - expected).abs() < 5e-8, "{profile} at {u}: {slope} against {expected}");
             }
         }
     }
 
     #[test]
-    fn nothing_is_left_at_the_edge_of_the_support_nor_beyond() {
+    fn profiles_are_zero_from_the_edge_of_the_support() {
         for profile in Profile::ALL {
             for u in [1.0, 1.0 + 1e-15, 3.0, f64::INFINITY] {
                 assert_eq!(profile.evaluate(u), (0.0, -0.0), "{profile} at {u}");
@@ -215,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn smooth_profiles_have_a_rigid_core_and_contact_has_none() {
+    fn only_smooth_profiles_have_a_rigid_core() {
         for profile in [Profile::Quintic, Profile::Septic, Profile::Quartic] {
             for u in [0.0, -1e-9, -0.7, f64::NEG_INFINITY] {
                 assert_eq!(profile.evaluate(u), (1.0, -0.0), "{profile} at {u}");
@@ -226,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn names_read_back() {
+    fn names_parse_to_their_profile() {
         for profile in Profile::ALL {
             assert_eq!(profile.name().parse(), Ok(profile));
         }
@@ -234,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_gives_the_bits_of_its_points() {
+    fn a_block_has_the_bits_of_single_points() {
         let distances: [f64; LANES] = std::array::from_fn(|lane| -0.2 + 0.04 * lane as f64);
         for profile in Profile::ALL {
             let block = profile.evaluate_block(&distances, 0.3);

@@ -1,15 +1,17 @@
-//! Region fields: everything inside a region moves rigidly, nothing outside a larger one moves at all.
+//! Region fields: the inside of a region moves rigidly, and the motion fades to zero over a layer
+//! around it.
 //!
 //! ```text
 //! V = ∇p × ∇q,   p = g α,  q = g β,   g = g((r(x) − rᵢ)/(rₒ − rᵢ))
 //! ```
 //!
-//! with α = u·x and β = w·x for a translation along u × w, and α = a·(x − c) and β = ½|a × (x − c)|² for a rotation about the
-//! axis a through c. This product is the curl of g² ½(α ∇β − β ∇α), so a region is a [`Tool`] with the squared profile whose
-//! distance is r(x) − rᵢ and whose support is rₒ − rᵢ. The region travels with the motion.
+//! For a translation along u × w, α = u·x and β = w·x. For a rotation about the axis a through c, α
+//! = a·(x − c) and β = ½|a × (x − c)|². The product is the curl of g² ½(α ∇β − β ∇α), so a region
+//! is a [`Tool`] with the squared profile, the distance r(x) − rᵢ and the support rₒ − rᵢ. The
+//! region moves with the motion.
 //!
-//! Source: W. von Funck, H. Theisel, H.-P. Seidel, *Vector Field Based Shape Deformations*, 2006, with the rotation's β halved,
-//! which makes its angular velocity one.
+//! Source: W. von Funck, H. Theisel, H.-P. Seidel, *Vector Field Based Shape Deformations*, 2006,
+//! with half the β of the rotation, so that its angular velocity is one.
 
 use std::sync::Arc;
 
@@ -17,7 +19,21 @@ use isochore_mesh::Distance;
 
 use crate::fields::{Pose, Profile, Tool, ToolError};
 
-/// An inner region and the layer around it, over which its motion fades.
+/// An inner region and the layer around it in which its motion fades.
+///
+/// # Examples
+/// ```
+/// use std::sync::Arc;
+///
+/// use isochore_field::{Pose, Profile, Region, ToolError};
+/// use isochore_mesh::Sphere;
+///
+/// let ball = Arc::new(Sphere::new(0.4).unwrap());
+/// assert!(Region::new(ball.clone(), Pose::IDENTITY, 0.3, Profile::Quintic).is_ok());
+///
+/// let kinked = Region::new(ball, Pose::IDENTITY, 0.3, Profile::Thesis);
+/// assert_eq!(kinked.unwrap_err(), ToolError::NoSquare(Profile::Thesis));
+/// ```
 #[derive(Debug, Clone)]
 pub struct Region {
     pub(crate) tool: Tool,
@@ -25,11 +41,14 @@ pub struct Region {
 }
 
 impl Region {
-    /// What lies inside `inner`, whose coordinates `placement` carries to the world, and a layer of thickness `outer_distance`
-    /// around it.
+    /// A region with the signed distance `inner`, placed in the world by `placement` (world from
+    /// region). Its motion fades over a layer of thickness `outer_distance`, model units.
     ///
     /// # Errors
-    /// [`ToolError`], also where the `profile` has a kink and hence no square.
+    /// [`ToolError::NoSquare`] if the profile has a kink and hence no square,
+    /// [`ToolError::Support`] if `outer_distance` is not a positive length, [`ToolError::Reach`] if
+    /// the distance is not known that far outside, and [`ToolError::Empty`] if the region has no
+    /// volume.
     pub fn new(
         inner: Arc<dyn Distance>,
         placement: Pose,

@@ -1,4 +1,11 @@
-//! Rigid motions about a center, and the vector potentials of their velocities.
+//! Rigid motions about a center and the vector potentials of their velocities.
+//!
+//! ```text
+//! A = ½ v×r + ⅓ (ω×r)×r,   curl A = v + ω×r
+//! ```
+//!
+//! r is the position relative to the center, v the velocity of the center and ω the angular
+//! velocity.
 
 mod rigid_gauge;
 
@@ -15,7 +22,7 @@ pub(crate) struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// The vector potential A = ½ v×r + ⅓ (ω×r)×r at `point`, and its curl v + ω×r.
+    /// Vector potential A = ½ v×r + ⅓ (ω×r)×r at `point`, and its curl v + ω×r.
     #[inline(always)]
     pub(crate) fn potential(&self, point: DVec3) -> (DVec3, DVec3) {
         let r = point - self.center;
@@ -23,12 +30,12 @@ impl RigidMotion {
         ((0.5 * self.linear + turn * (1.0 / 3.0)).cross(r), self.linear + turn)
     }
 
-    /// The same motion, described about another center.
+    /// The same motion with another center.
     pub(crate) fn about(&self, center: DVec3) -> Self {
         Self { center, linear: self.velocity(center), angular: self.angular }
     }
 
-    /// The velocity of `point`, v + ω×r.
+    /// Velocity v + ω×r of `point`.
     pub(crate) fn velocity(&self, point: DVec3) -> DVec3 {
         self.linear + self.angular.cross(point - self.center)
     }

@@ -1,15 +1,16 @@
-//! The field of a ring that moves along its axis.
+//! Field of a ring that moves along its axis.
 //!
 //! ```text
 //! V = ∇θ × ∇(g(d/R) (R₀² − ρ²)/2)
 //! ```
 //!
-//! θ is the angle about the axis, ρ the distance from it, d the distance from the torus of major radius R₀, R the support and g
-//! the profile. ∇θ has one value everywhere off the axis although θ has not, so the ring needs no cut. As curl(g A) with
-//! A = −(R₀² − ρ²)/2 ∇θ, whose curl is the axis' direction, the core moves as one body.
+//! θ is the angle about the axis, ρ the distance from the axis, d the distance from the torus of
+//! major radius R₀, R the support and g the profile. θ is multivalued, but ∇θ has one value
+//! everywhere off the axis, so the ring needs no cut. V equals curl(g A) with A = −(R₀² − ρ²)/2 ∇θ.
+//! The curl of A is the direction of the axis, so the core moves as one body.
 //!
-//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, section 11.2.4, where the ring is the sum of two
-//! strips.
+//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, section 11.2.4, where
+//! the ring is the sum of two strips.
 
 use glam::DVec3;
 use isochore_mesh::{Aabb, LANES, PointBlock};
@@ -19,67 +20,87 @@ use crate::fields::{Field, FieldBlock, MovingField, NO_CORE, Pose, Profile, Weig
 /// A solid ring with a support around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RingShape {
-    /// Middle of the ring, model units.
+    /// Center of the ring, model units.
     pub center: DVec3,
-    /// Direction across the ring's plane, of any length but zero.
+    /// Normal of the plane of the ring; any nonzero length.
     pub axis: DVec3,
-    /// Radius of the circle in the middle of the tube, model units.
+    /// Radius of the center line of the tube, model units.
     pub major: f64,
     /// Radius of the tube, model units.
     pub minor: f64,
-    /// How far the field reaches beyond the tube, model units; short of the axis.
+    /// Distance that the field reaches beyond the tube, model units; must end before the axis.
     pub support: f64,
-    /// How the field fades over the support.
+    /// Profile by which the field fades over the support.
     pub profile: Profile,
 }
 
-/// A ring on its way along its axis, from time 0 to 1.
+/// A ring that moves along its axis over the time from 0 to 1.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_field::{MovingField, Profile, Ring, RingShape};
+///
+/// let (major, minor, support) = (1.0, 0.25, 0.3);
+/// let (center, axis, profile) = (DVec3::ZERO, DVec3::Z, Profile::Quintic);
+/// let ring = Ring::new(RingShape { center, axis, major, minor, support, profile }, 0.5)?;
+///
+/// let field = ring.at(0.0);
+/// assert!(field.velocity(DVec3::X).distance(0.5 * DVec3::Z) < 1e-15); // inside the tube
+/// assert_eq!(field.velocity(DVec3::ZERO), DVec3::ZERO); // on the axis
+/// # Ok::<(), isochore_field::RingError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ring {
     shape: RingShape,
     distance: f64,
 }
 
-/// Why there is no such ring.
+/// Errors when constructing a [`Ring`].
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum RingError {
-    /// A length that must be positive is not.
+    /// A length is not positive and finite.
     #[error("the {what} must be a positive length, not {value}")]
     NotPositive {
-        /// Which one.
+        /// Name of the length.
         what: &'static str,
-        /// Its value.
+        /// Value given.
         value: f64,
     },
     /// The field would reach the axis, where the angle has no gradient.
     #[error(
-        "minor radius and support, {} together, reach the axis of the ring, which is {major} away; give less of them",
+        "minor radius and support, {} together, reach the axis of the ring, whose major radius is {major}; reduce one of them",
         .minor + .support
     )]
     ReachesAxis {
-        /// The major radius.
+        /// Major radius.
         major: f64,
-        /// The minor radius.
+        /// Minor radius.
         minor: f64,
-        /// The support.
+        /// Support.
         support: f64,
     },
-    /// The profile has a kink on the surface, across which a ring would be torn.
-    #[error("the profile `{0}` is for tools that move rigidly; choose another")]
+    /// The profile has a kink on the surface, which would tear the material at the ring.
+    #[error("the profile `{0}` has a kink on the surface, which a ring cannot have; choose another")]
     Profile(Profile),
-    /// The axis has no direction.
-    #[error("the axis must have a length")]
+    /// The axis is the zero vector.
+    #[error("the axis must be nonzero")]
     ZeroAxis,
-    /// A number is infinite or not a number.
+    /// A number is infinite or NaN.
     #[error("{0} must be finite")]
     NotFinite(&'static str),
 }
 
 impl Ring {
-    /// The way of the ring by `distance`, model units, along its axis; backwards where that is negative.
+    /// A ring that moves by `distance`, model units, along its axis; a negative distance moves it
+    /// backwards.
     ///
     /// # Errors
-    /// [`RingError`].
+    /// - [`RingError::NotPositive`] if a radius or the support is not a positive length.
+    /// - [`RingError::NotFinite`] if the center, the axis or the distance is not finite.
+    /// - [`RingError::ZeroAxis`] if the axis is the zero vector.
+    /// - [`RingError::ReachesAxis`] if minor radius and support together reach the major radius.
+    /// - [`RingError::Profile`] for the profile with a kink, [`Profile::Thesis`].
     pub fn new(shape: RingShape, distance: f64) -> Result<Self, RingError> {
         let RingShape { center, axis, major, minor, support, profile } = shape;
         for (what, value) in [("major radius", major), ("minor radius", minor), ("support", support)] {
@@ -94,7 +115,7 @@ impl Ring {
                 return Err(RingError::NotFinite(what));
             }
         }
-        // Scaled first, so that neither tiny nor huge axes leave the range in which squares are representable.
+        // Scaled first, so that the squares of tiny and huge axes neither underflow nor overflow.
         let axis = (axis / axis.abs().max_element()).try_normalize().ok_or(RingError::ZeroAxis)?;
         if minor + support >= major {
             return Err(RingError::ReachesAxis { major, minor, support });
@@ -105,7 +126,7 @@ impl Ring {
         Ok(Self { shape: RingShape { axis, ..shape }, distance })
     }
 
-    /// The ring at time 0; its axis is a unit vector.
+    /// The ring at time 0, with a unit axis.
     pub fn shape(&self) -> &RingShape {
         &self.shape
     }
@@ -136,13 +157,13 @@ impl MovingField for Ring {
 
 /// Box of the support.
 fn bounds(shape: &RingShape) -> Aabb {
-    // A circle about the unit axis a spans √(1 − a²) of its radius along each coordinate.
+    // A circle about the unit axis a extends √(1 − a²) of its radius along each coordinate.
     let spans = (DVec3::ONE - shape.axis * shape.axis).max(DVec3::ZERO);
     let span = DVec3::new(spans.x.sqrt(), spans.y.sqrt(), spans.z.sqrt()) * shape.major;
     Aabb { min: shape.center - span, max: shape.center + span }.expanded(shape.minor + shape.support)
 }
 
-/// A ring where it is at one instant, and how fast it moves.
+/// A ring at one instant, with its speed.
 #[derive(Debug, Clone, Copy)]
 struct PlacedRing {
     shape: RingShape,
@@ -166,7 +187,7 @@ impl Field for PlacedRing {
                 continue;
             }
             let (weight, slope) = profile.evaluate(distance / support);
-            // In the very middle of the tube the distance has no gradient, and is given none.
+            // On the center line the distance has no gradient; zero is used.
             let inverse = if from_circle > 0.0 { 1.0 / from_circle } else { 0.0 };
             let gradient = slope / support * inverse * (off_circle / radius * arm + height * axis);
             let angle_gradient = axis.cross(arm) / (radius * radius);

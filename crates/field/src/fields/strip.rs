@@ -1,19 +1,23 @@
-//! Strips: fields that follow a spine, along it or across it.
+//! Strips: fields that move material along a spine, or sweep a spine sideways.
 //!
 //! ```text
 //! along:   V = curl(g² ½ T×r) = g² T + (2g g′/R) ∇d × (½ T×r)
 //! across:  V = S′(s) ∇s × ∇(g U·r) = curl(−g (U·r) S′ ∇s),   ∇s = T/(1 − κξ),   U = m×T
 //! ```
 //!
-//! r leads from the nearest point of the spine to the point at hand, T is the tangent there, s the arc length up to there, κξ the
-//! curvature vector times r, d the signed distance from the strip, R the support, g(d/R) the profile, and m the velocity of the
-//! spine. S′ rises smoothly from zero at the ends of the spine. Along, the core streams at unit speed; across, it moves by the part
-//! of m normal to the spine over 1 − κξ. The frame of the spine drops out of both: any smooth normal vectors would give the same
-//! field.
+//! r is the vector from the nearest point of the spine to the evaluated point; T is the tangent and
+//! s the arc length at that nearest point. κξ is the curvature vector times r. d is the signed
+//! distance from the strip, R the support, g(d/R) the profile and m the velocity of the spine. S′
+//! rises smoothly from zero at the ends of the spine.
 //!
-//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, sections 11.2.2 (type I) and 11.2.3 (type II). There
-//! the scalar across is any that grows along the spine and stops at its ends, where the field then jumps; it is the arc length
-//! here, and fades.
+//! Along, the core streams at unit speed. Across, the core moves with the normal part of m, divided
+//! by 1 − κξ. Both fields are independent of the frame of the spine: any smooth normal vectors
+//! would give the same field.
+//!
+//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, sections 11.2.2 (type
+//! I) and 11.2.3 (type II). For type II, the thesis uses any scalar that grows along the spine and
+//! stops at its ends, where the field then jumps. This module uses the arc length and fades the
+//! field at the ends.
 
 mod error;
 mod extent;
@@ -34,45 +38,62 @@ pub use spine_curve::StripSpine;
 pub use strip_shape::StripShape;
 
 use crate::fields::{Field, MovingField, Tool};
-use error::REACH_SHARE;
+use error::REACH_FRACTION;
 use extent::farthest;
 use placed_strip::PlacedStrip;
 use spine_curve::SpineCurve;
 use spine_instant::{SpineInstant, StartFrame, default_reference};
 use strip_shape::CrossSection;
 
-/// Instants at which a spine that changes its shape is looked at. Fewer might miss the moment at which it bends most; more takes
-/// longer.
+/// Number of instants at which a deforming spine is checked. Larger: slower. Smaller: the moment of
+/// largest curvature can be missed.
 const CHECKED_INSTANTS: usize = 65;
 
-/// Samples of each smooth piece of the spine for its reach, and of the whole at least and at most. The time grows with the square
-/// of their number, the error falls with it.
+/// Samples of each smooth piece of the spine for its reach, and the smallest and largest number in
+/// all. Larger: the time grows with the square of the number. Smaller: the error of the reach grows
+/// with the square of the spacing.
 const REACH_SAMPLES_PER_PIECE: usize = 16;
 const LEAST_REACH_SAMPLES: usize = 64;
 const MOST_REACH_SAMPLES: usize = 512;
 
-/// Where a strip carries the material inside it, over the time from 0 to 1.
+/// Motion of the material inside a strip, over the time from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StripMotion {
-    /// Along the spine, towards its end. The field stays in place, but for a spine that changes its shape.
+    /// Along the spine, towards its end. The field is constant in time unless the spine deforms.
     Along {
-        /// How far the core is carried, model units; towards the start of the spine where that is negative.
+        /// Distance that the core moves, model units; negative towards the start of the spine.
         distance: f64,
     },
-    /// With the spine, as a pushed rod does. Where the spine also changes its shape, that motion is added.
+    /// With the spine, like a rod that is pushed sideways. The motion of a deforming spine is
+    /// added.
     Across {
-        /// How far the spine travels, model units.
+        /// Displacement of the spine, model units.
         travel: DVec3,
     },
 }
 
-/// A strip about a spine, over the time from 0 to 1.
+/// A solid around a spine, with its motion over the time from 0 to 1.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_field::{MovingField, Profile, Strip, StripMotion, StripShape, StripSpine};
+///
+/// let spine = StripSpine::through(&[DVec3::ZERO, DVec3::X, 2.0 * DVec3::X])?;
+/// let shape = StripShape::round(0.2, 0.3, Profile::Quintic)?;
+/// let strip = Strip::new(spine, shape, StripMotion::Along { distance: 0.5 })?;
+///
+/// let field = strip.at(0.0);
+/// assert!(field.velocity(DVec3::new(1.0, 0.1, 0.0)).distance(0.5 * DVec3::X) < 1e-14);
+/// assert_eq!(field.velocity(DVec3::new(1.0, 0.6, 0.0)), DVec3::ZERO);
+/// # Ok::<(), isochore_field::StripError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Strip {
     spine: Arc<StripSpine>,
     shape: Arc<StripShape>,
     motion: StripMotion,
-    /// The spine at time 0, which is that of all times where the shape does not change.
+    /// Spine at time 0, and at all times unless it deforms.
     start: Arc<SpineInstant>,
     start_frame: Option<StartFrame>,
     extent: f64,
@@ -80,10 +101,17 @@ pub struct Strip {
 }
 
 impl Strip {
-    /// The strip of a `shape` about a `spine` that carries what is inside it by `motion`.
+    /// The strip of a `shape` around a `spine`, with the given `motion` of its inside.
     ///
     /// # Errors
-    /// [`StripError`], most of all where the field would reach points that have no nearest point on the spine.
+    /// - [`StripError::NotFinite`] if the distance or the travel is not finite.
+    /// - [`StripError::Closed`] if a polygon or varying radii are combined with a closed spine.
+    /// - [`StripError::Reference`] if the reference direction is zero or parallel to the start of
+    ///   the spine.
+    /// - [`StripError::Reach`] if the field would reach points without a unique nearest point on
+    ///   the spine.
+    /// - [`StripError::TooShort`] if the motion is across and an open spine is too short for its
+    ///   ends to fade.
     pub fn new(spine: StripSpine, shape: StripShape, motion: StripMotion) -> Result<Self, StripError> {
         let is_finite = match motion {
             StripMotion::Along { distance } => distance.is_finite(),
@@ -114,7 +142,7 @@ impl Strip {
         &self.spine
     }
 
-    /// How it moves.
+    /// The motion.
     pub fn motion(&self) -> StripMotion {
         self.motion
     }
@@ -134,7 +162,7 @@ impl Strip {
         }
     }
 
-    /// How far from the spine the field reaches.
+    /// Distance from the spine that the field reaches.
     fn extent_from(&self, instant: &SpineInstant) -> f64 {
         let support = self.shape.support;
         match &self.shape.cross_section {
@@ -147,8 +175,8 @@ impl Strip {
     fn check(&self, instant: &SpineInstant, time: f64) -> Result<(), StripError> {
         let curve = instant.curve();
         let Reach { distance, curvature_radius, bottleneck_radius } = reach(curve, reach_samples(curve));
-        // A spine that stands still somewhere may have no number for its reach.
-        if distance.is_nan() || self.extent >= REACH_SHARE * distance {
+        // The reach is NaN if the parametric speed of the spine vanishes somewhere.
+        if distance.is_nan() || self.extent >= REACH_FRACTION * distance {
             return Err(StripError::Reach { extent: self.extent, curvature_radius, bottleneck_radius, time });
         }
         let (length, taper) = (instant.length(), self.extent);
@@ -158,7 +186,7 @@ impl Strip {
         Ok(())
     }
 
-    /// Largest speed in the core, from samples.
+    /// Largest speed in the core, sampled along the spine.
     fn core_speed_at(&self, instant: &SpineInstant) -> f64 {
         let travel = match self.motion {
             StripMotion::Along { distance } => return distance.abs(),
@@ -198,7 +226,7 @@ impl MovingField for Strip {
 
     fn approach_speed(&self) -> f64 {
         match &self.shape.cross_section {
-            // The spine may change its shape, but the tool stays what it is.
+            // Only the spine deforms; the tool does not.
             CrossSection::Tool(_) => self.travel().length(),
             _ => self.spine.top_speed(self.travel()),
         }

@@ -1,12 +1,13 @@
-//! The fields of the twist and the bend, for strokes that are masked; unmasked ones have exact flows.
+//! Fields of the twist and the bend, for masked strokes. Unmasked ones have exact flows.
 //!
 //! ```text
-//! twist: P = −½ Ω ρ² a,   V = Ω a×X,   Ω = rate · L,     L = a·X
-//! bend:  P = −¼ rate s² a, V = Ω a×X,   Ω = rate · s,     s = |X|²
+//! twist: P = −½ Ω ρ² a,    V = Ω a×X,   Ω = rate · L,   L = a·X
+//! bend:  P = −¼ rate s² a, V = Ω a×X,   Ω = rate · s,   s = |X|²
 //! ```
 //!
-//! X is the position relative to the origin, a the axis' unit direction and ρ the distance from the axis. For a twist, Ω may be
-//! any function of the height L; for a bend, P = −F(s) a has V = 2F′(s) a×X.
+//! X is the position relative to the origin, a the unit direction of the axis and ρ the distance
+//! from the axis. For a twist, Ω may be any function of the height L. For a bend, P = −F(s) a has
+//! the curl V = 2F′(s) a×X.
 
 use std::sync::Arc;
 
@@ -17,35 +18,38 @@ use crate::fields::{
     Field, FieldBlock, MirrorPlane, MovingField, NO_CORE, WeightedPotential, mask::mirrored_field::MirroredField,
 };
 
-/// What a motion and its mirror images leave of it counts as nothing below this share. Larger refuses weak motions; smaller lets
-/// rounding pass for one.
+/// The symmetric mean of a motion and its mirror images counts as zero if its speed is below this
+/// fraction of the speed of the motion. Larger: rejects weak motions. Smaller: rounding passes for
+/// a motion.
 const UNDONE: f64 = 1e-9;
 
-/// What the angular velocity of a swirl is proportional to.
+/// Quantity that the angular velocity of a swirl is proportional to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum SwirlLaw {
-    /// The height along the axis: a twist.
+    /// Height along the axis: a twist.
     Height,
-    /// The squared distance from the origin: a bend.
+    /// Squared distance from the origin: a bend.
     SquaredDistance,
 }
 
-/// All of space turns about an axis, faster in some places than in others; the field does not change with time.
+/// A rotation of all space about an axis whose angular velocity varies with position. The field
+/// does not change with time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SwirlField {
-    /// A point of the axis, where the angular velocity is zero.
+    /// Point of the axis at which the angular velocity is zero.
     pub(crate) origin: DVec3,
     /// Unit direction of the axis.
     pub(crate) direction: DVec3,
     pub(crate) law: SwirlLaw,
-    /// Angular velocity where the law's measure is one.
+    /// Angular velocity, radians per unit of time, where the quantity of the law is one.
     pub(crate) rate: f64,
-    /// Box of what is to be carried, by which the speed is bounded: without a box it has no bound.
+    /// Box of the points to advect, in which the speed is bounded. Over all space it has no bound.
     pub(crate) bounds: Aabb,
 }
 
 impl SwirlField {
-    /// Largest distance from the axis, and largest angular velocity, in the box: both are largest at corners.
+    /// Largest distance from the axis and largest angular velocity in the box. Both are largest at
+    /// corners.
     fn extremes(&self) -> (f64, f64) {
         let corners = self.bounds.corners().map(|corner| corner - self.origin);
         let arms = corners.map(|corner| corner.reject_from_normalized(self.direction).length());
@@ -57,7 +61,8 @@ impl SwirlField {
         (largest(arms), self.rate.abs() * largest(measures))
     }
 
-    /// Whether the symmetric mean of this and its mirror images stands still all over the box.
+    /// Whether the symmetric mean of this field and its mirror images vanishes at all points of a
+    /// grid in the box.
     pub(crate) fn is_undone_by(&self, mirrors: &[MirrorPlane]) -> bool {
         if mirrors.is_empty() || self.core_speed() == 0.0 {
             return false;
@@ -65,8 +70,8 @@ impl SwirlField {
         let field = MirroredField::new(Arc::new(*self), mirrors).at(0.0);
         let least = UNDONE * self.core_speed();
         let grid = |index: usize| [index % 4, index / 4 % 4, index / 16].map(|step| step as f64 / 3.0);
-        let place = |index| self.bounds.min + self.bounds.size() * DVec3::from_array(grid(index));
-        (0..64).all(|index| field.velocity(place(index)).length() <= least)
+        let grid_point = |index| self.bounds.min + self.bounds.size() * DVec3::from_array(grid(index));
+        (0..64).all(|index| field.velocity(grid_point(index)).length() <= least)
     }
 }
 
@@ -84,7 +89,8 @@ impl MovingField for SwirlField {
         arm * angular
     }
 
-    /// The longest arm, so that a step turns by no more than the fraction of it that bounds the travel, in radians.
+    /// The longest distance from the axis. It limits the rotation in a time step to the allowed
+    /// fraction of travel, in radians.
     fn feature_size(&self) -> f64 {
         let (arm, _) = self.extremes();
         if arm > 0.0 { arm } else { f64::INFINITY }

@@ -1,4 +1,8 @@
-//! A tool: a shape with a support around it.
+//! Tools: shapes with a support around their surface.
+//!
+//! A tool consists of the signed distance d of its shape, the support R and the profile g. Its
+//! field is V = curl(g(d/R) A), where A is the vector potential of its rigid motion; see
+//! [`RigidField`] for the formula and its source.
 
 pub(crate) mod gauge;
 mod moving_tool;
@@ -14,7 +18,24 @@ use gauge::Gauge;
 pub use moving_tool::MovingTool;
 pub use rigid_field::{RigidField, VelocityBlock};
 
-/// A shape that pushes what is near: its field fades, by a profile, over the support around its surface.
+/// A shape that moves the material near it; by its profile, the motion fades over the support
+/// around its surface.
+///
+/// # Examples
+/// ```
+/// use std::sync::Arc;
+///
+/// use isochore_field::{Profile, Tool, ToolError};
+/// use isochore_mesh::Sphere;
+///
+/// let ball = Arc::new(Sphere::new(0.4).unwrap());
+/// let tool = Tool::new(ball.clone(), 0.3, Profile::Quintic)?;
+/// assert_eq!(tool.feature_size(), 0.3);
+///
+/// let error = Tool::new(ball, 0.0, Profile::Quintic).unwrap_err();
+/// assert_eq!(error.to_string(), "the support must be a positive length, not 0");
+/// # Ok::<(), ToolError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Tool {
     distance: Arc<dyn Distance>,
@@ -26,10 +47,13 @@ pub struct Tool {
 }
 
 impl Tool {
-    /// A tool with the signed `distance` of its shape, in tool coordinates, whose field reaches `support` beyond the surface.
+    /// A tool with the signed `distance` of its shape, in tool coordinates. Its field reaches
+    /// `support` beyond the surface, model units.
     ///
     /// # Errors
-    /// [`ToolError`] when the support is not a positive length, or when the distance is not known that far out.
+    /// - [`ToolError::Support`] if the support is not a positive length.
+    /// - [`ToolError::Reach`] if the distance is not known that far outside.
+    /// - [`ToolError::Empty`] if the shape has no volume.
     pub fn new(distance: Arc<dyn Distance>, support: f64, profile: Profile) -> Result<Self, ToolError> {
         if !(support > 0.0 && support.is_finite()) {
             return Err(ToolError::Support(support));
@@ -44,107 +68,114 @@ impl Tool {
         Ok(Self { distance, support, profile, center, gauge: None, reference: None })
     }
 
-    /// The signed distance of the shape, in tool coordinates.
+    /// Signed distance of the shape, in tool coordinates.
     pub fn distance(&self) -> &dyn Distance {
         &*self.distance
     }
 
-    /// The signed distance of the shape, to be shared with another tool.
+    /// Signed distance of the shape, for use in another tool.
     pub fn shared_distance(&self) -> Arc<dyn Distance> {
         Arc::clone(&self.distance)
     }
 
-    /// R: how far beyond the surface the field reaches, model units.
+    /// Support R: the distance that the field reaches beyond the surface, model units.
     pub fn support(&self) -> f64 {
         self.support
     }
 
-    /// How the field fades over the support.
+    /// Profile by which the field fades over the support.
     pub fn profile(&self) -> Profile {
         self.profile
     }
 
-    /// Origin of the gauge of the vector potential: the volume centroid of the shape, in tool coordinates. Any other origin
-    /// gives the same speed normal to the surface and a stronger return flow around it.
+    /// Center of the vector potential, in tool coordinates: the volume centroid of the shape. Any
+    /// other center gives the same speed normal to the surface and a stronger return flow around
+    /// the tool.
     pub fn center(&self) -> DVec3 {
         self.center
     }
 
-    /// Length over which the field changes: the support, or half the shape's shortest extent where that is less.
+    /// Length over which the field varies: the support, or half the shortest extent of the shape if
+    /// that is smaller.
     pub fn feature_size(&self) -> f64 {
         self.support.min(0.5 * self.distance.bounds().size().min_element())
     }
 
-    /// The same tool with the free-form gauge: polynomials of degree three, fitted to the surface so that the flow around the
-    /// tool is slow and even, of which `share`, from 0 to 1, is added to the potential.
+    /// The same tool with the free-form gauge: the `fraction`, from 0 to 1, of gradients of cubic
+    /// polynomials is added to the potential. The polynomials are fitted to the surface so that the
+    /// flow around the tool is slow and even.
     ///
-    /// The core and the speed normal to the surface are untouched. Material takes the short way round: on an elongated tool that
-    /// moves sideways it no longer escapes over the ends, which at a share of 1 halves the peak of the flow around the tool and
-    /// the way of what is pushed aside, but cuts sharper grooves, which ask for several times the refinement.
+    /// The core and the speed normal to the surface do not change. Displaced material takes the
+    /// short path around the tool. Around an elongated tool that moves sideways, it no longer flows
+    /// over the ends: a fraction of 1 halves both the peak speed of the flow and the path length of
+    /// the material. It also cuts sharper grooves, which need several times the refinement.
     ///
     /// # Errors
-    /// [`ToolError::FreeForm`] when the share is not from 0 to 1, or the shape has no end.
-    pub fn with_free_form(mut self, share: f64) -> Result<Self, ToolError> {
-        if !((0.0..=1.0).contains(&share) && self.distance.bounds().size().is_finite()) {
-            return Err(ToolError::FreeForm(share));
+    /// [`ToolError::FreeForm`] if the fraction is not from 0 to 1 or the shape is unbounded.
+    pub fn with_free_form(mut self, fraction: f64) -> Result<Self, ToolError> {
+        if !((0.0..=1.0).contains(&fraction) && self.distance.bounds().size().is_finite()) {
+            return Err(ToolError::FreeForm(fraction));
         }
-        self.gauge = (share > 0.0).then(|| Box::new(Gauge::fitted(&*self.distance, self.center, share)));
+        self.gauge = (fraction > 0.0).then(|| Box::new(Gauge::fitted(&*self.distance, self.center, fraction)));
         Ok(self)
     }
 
-    /// The same tool with another origin of the gauge, and with another gauge.
+    /// The same tool with another center of the potential and another gauge.
     pub(crate) fn with_gauge(self, center: DVec3, gauge: Option<Gauge>) -> Self {
         Self { center, gauge: gauge.map(Box::new), ..self }
     }
 
-    /// The same tool with speeds measured in the box `reference`, in tool coordinates, in place of the bounds of its shape.
+    /// The same tool with its speed measured in the box `reference`, in tool coordinates, instead
+    /// of the bounds of its shape.
     pub(crate) fn with_reference(self, reference: Aabb) -> Self {
         Self { reference: Some(reference), ..self }
     }
 
-    /// What is added to the vector potential, if anything.
+    /// Gauge that is added to the vector potential, if any.
     pub(crate) fn gauge(&self) -> Option<&Gauge> {
         self.gauge.as_deref()
     }
 
-    /// Box in whose points the speed of the tool is measured.
+    /// Box over which the speed of the tool is measured.
     pub(crate) fn reference(&self) -> Aabb {
         self.reference.unwrap_or(self.distance.bounds())
     }
 
-    /// Puts the origin of the gauge elsewhere.
+    /// Moves the center of the potential.
     #[cfg(test)]
     pub(crate) fn shift_center(&mut self, shift: DVec3) {
         self.center += shift;
     }
 
-    /// Box that holds the support.
+    /// Box of the support.
     pub(crate) fn support_bounds(&self) -> Aabb {
         self.distance.bounds().expanded(self.support)
     }
 }
 
-/// Why a shape cannot be a [`Tool`].
+/// Errors when constructing a [`Tool`] or a [`Region`](crate::Region).
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ToolError {
     /// The support is not a positive, finite length.
     #[error("the support must be a positive length, not {0}")]
     Support(f64),
     /// The sampled distance ends inside the support.
-    #[error("the support {support} goes beyond the sampled distance, which reaches {reach}")]
+    #[error(
+        "the support {support} exceeds the reach of the sampled distance, {reach}; reduce the support or sample farther"
+    )]
     Reach {
-        /// Support asked for.
+        /// Support given.
         support: f64,
-        /// Where the samples end.
+        /// Reach of the samples beyond the surface.
         reach: f64,
     },
-    /// The share of the free-form gauge is out of range, or the shape has no surface of finite size.
-    #[error("the share of the free-form gauge must be from 0 to 1, not {0}, and the shape must have an end")]
+    /// The fraction of the free-form gauge is out of range, or the shape is unbounded.
+    #[error("the free-form gauge needs a fraction from 0 to 1 and a bounded shape; the fraction is {0}")]
     FreeForm(f64),
-    /// The profile of a region has a kink, and hence no square.
-    #[error("the profile {0} has a kink, which a region's field cannot have; choose another")]
+    /// The profile of a region has a kink and hence no square.
+    #[error("the profile `{0}` has a kink, which the field of a region cannot have; choose another")]
     NoSquare(Profile),
     /// The shape has no volume, hence no centroid.
-    #[error("the tool's shape is empty")]
+    #[error("the shape of the tool has no volume")]
     Empty,
 }

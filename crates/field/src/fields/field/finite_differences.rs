@@ -1,24 +1,25 @@
-//! The shared suite that every field joins: velocity and share are the derivatives they claim to be.
+//! Test suite for every field: velocity and weight gradient against central differences.
 
 use glam::{DMat3, DVec3};
 use isochore_mesh::PointBlock;
 
 use crate::fields::{Field, FieldBlock};
 
-/// Largest differences between what a field states and what central differences give.
+/// Largest differences between the values of a field and central differences.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Deviation {
-    /// Of the velocity from the curl of the potential.
+    /// Difference of the velocity from the curl of the potential.
     pub(crate) curl: f64,
-    /// Of the divergence of the velocity from zero.
+    /// Absolute divergence of the velocity.
     pub(crate) divergence: f64,
-    /// Of the gradient of the share.
+    /// Difference of the gradient of the weight from its finite difference.
     pub(crate) gradient: f64,
 }
 
-/// What `field` deviates from its definition by at `points`, by differences over twice `step`.
+/// Largest deviations of `field` from its definition at `points`, by central differences with the
+/// given `step`.
 ///
-/// Truncation grows with the square of the step, and rounding with its inverse.
+/// The truncation error grows with the square of the step, the rounding error with its inverse.
 pub(crate) fn deviation(field: &dyn Field, points: &[DVec3], step: f64) -> Deviation {
     points.iter().fold(Deviation::default(), |worst, &point| {
         let at = |point: DVec3| {
@@ -37,8 +38,8 @@ pub(crate) fn deviation(field: &dyn Field, points: &[DVec3], step: f64) -> Devia
         let [dx, dy, dz] = derivative(|block| block.potential.get(0));
         let curl = DVec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x);
         let [dx, dy, dz] = derivative(|block| block.velocity.get(0));
-        let [share_x, share_y, share_z] = derivative(|block| DVec3::splat(block.weight.value[0])).map(|share| share.x);
-        let gradient = DVec3::new(share_x, share_y, share_z);
+        let weight_slopes = derivative(|block| DVec3::splat(block.weight.value[0])).map(|slope| slope.x);
+        let gradient = DVec3::from_array(weight_slopes);
         Deviation {
             curl: worst.curl.max(curl.distance(center.velocity.get(0))),
             divergence: worst.divergence.max((dx.x + dy.y + dz.z).abs()),
@@ -47,15 +48,15 @@ pub(crate) fn deviation(field: &dyn Field, points: &[DVec3], step: f64) -> Devia
     })
 }
 
-/// Points of a low-discrepancy sequence in the cube of half side `size` about the origin.
+/// Points of a low-discrepancy sequence in the cube of half side `size` around the origin.
 pub(crate) fn scattered_points(count: u32, size: f64) -> Vec<DVec3> {
-    // Multiples of the powers of the plastic number's generalization to three dimensions.
+    // Reciprocal powers of the plastic number's generalization to three dimensions.
     const STEPS: DVec3 = DVec3::new(0.819_172_513_396_164_4, 0.671_043_606_703_789_3, 0.549_700_477_901_970_2);
     (1..=count).map(|index| size * (2.0 * (f64::from(index) * STEPS).fract() - 1.0)).collect()
 }
 
 #[test]
-fn the_suite_sees_a_velocity_that_is_no_curl() {
+fn detects_a_velocity_with_divergence() {
     #[derive(Debug)]
     struct Source;
     impl Field for Source {

@@ -1,4 +1,7 @@
-//! The shared suite that every field joins: no net flux through closed surfaces that cut its support.
+//! Test suite for every field: the net flux through closed surfaces that cut its support is zero.
+//!
+//! The flux through a sphere is integrated by Gauss-Legendre quadrature over cells of equal area,
+//! refined where the velocity has kinks or jumps.
 
 use std::f64::consts::TAU;
 
@@ -11,14 +14,16 @@ use crate::fields::{Field, FieldBlock};
 const NODES: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
-/// Cells along height and longitude before any is divided.
+/// Number of cells along height and along longitude before refinement.
 const CELLS: usize = 32;
 
-/// Halvings of a cell that a kink crosses, where the velocity may jump. Each makes what a jump leaves three times less, and
-/// costs twice the evaluations.
+/// Largest number of halvings of a cell that a kink crosses, where the velocity may jump. Each
+/// halving divides the error of a jump by about three and doubles the evaluations.
 const DEPTH: u32 = 6;
 
-/// A cell that no kink crosses is divided while that changes its flow by more than this share of the sphere's 4π.
+/// A cell without a kink is divided while that changes its flow by more than this, relative to a
+/// unit velocity on the unit sphere. Larger: the error of smooth fields shows. Smaller: more
+/// evaluations.
 const CELL_TOLERANCE: f64 = 1e-9;
 
 /// Net and absolute flow through a part of the unit sphere.
@@ -68,10 +73,11 @@ impl Cell {
         })
     }
 
-    /// Whether a surface at this `distance` from points of the sphere may cross the cell.
+    /// Whether a surface may cross the cell; `distance` is the distance of points of the sphere
+    /// from that surface.
     fn may_be_crossed(&self, distance: impl Fn(DVec3) -> f64) -> bool {
         let height = self.height + 0.5 * self.size[0];
-        // Towards a pole a cell of equal area grows as long as the root of its height.
+        // Near a pole the length of a cell of equal area grows like the root of its height.
         let extent = (2.0 * self.size[0]).sqrt().min(self.size[0] / (1.0 - height * height).sqrt());
         distance(normal(height, self.longitude + 0.5 * self.size[1])) < 0.5 * (extent + self.size[1])
     }
@@ -99,17 +105,18 @@ fn normal(height: f64, longitude: f64) -> DVec3 {
     DVec3::new(ring * libm::cos(longitude), ring * libm::sin(longitude), height)
 }
 
-/// |∮ V·n| / ½∮ |V·n| over a sphere: the share of what flows in that does not flow out. `kink` is the distance to the nearest
-/// surface where the velocity may have a kink or a jump.
+/// |∮ V·n| / ½∮ |V·n| over a sphere: the net flux as a fraction of the inflow. `kink` is the
+/// distance from the nearest surface where the velocity may have a kink or a jump.
 fn relative_flux(
     velocity: &impl Fn(&PointBlock) -> PointBlock,
     kink: &impl Fn(DVec3) -> f64,
     center: DVec3,
     radius: f64,
 ) -> f64 {
-    let place = |normal: &DVec3| center + radius * normal;
-    let velocity = |normals: &[DVec3]| velocity(&PointBlock::gather(&normals.iter().map(place).collect::<Vec<_>>()));
-    let kink = |normal: DVec3| kink(place(&normal)) / radius;
+    let on_sphere = |normal: &DVec3| center + radius * normal;
+    let velocity =
+        |normals: &[DVec3]| velocity(&PointBlock::gather(&normals.iter().map(on_sphere).collect::<Vec<_>>()));
+    let kink = |normal: DVec3| kink(on_sphere(&normal)) / radius;
     let size = [2.0 / CELLS as f64, TAU / CELLS as f64];
     let cells = (0..CELLS * CELLS).map(|index| Cell {
         height: -1.0 + (index / CELLS) as f64 * size[0],
@@ -120,7 +127,8 @@ fn relative_flux(
     if flow.absolute == 0.0 { 0.0 } else { flow.net.abs() / (0.5 * flow.absolute) }
 }
 
-/// Largest relative flux over spheres that cut the surface and the support of a shape about the origin of this `size`.
+/// Largest relative flux over spheres that cut the surface and the support of a shape of this
+/// `size` around the origin.
 pub(crate) fn worst_flux(velocity: impl Fn(&PointBlock) -> PointBlock, kink: impl Fn(DVec3) -> f64, size: f64) -> f64 {
     let centers = [DVec3::new(0.9, 0.1, 0.2), DVec3::new(-0.2, 1.0, 0.5), DVec3::new(0.3, -0.4, -1.1)];
     let spheres = centers.into_iter().flat_map(|center| [0.45, 0.8].map(|radius| (size * center, size * radius)));
@@ -137,12 +145,13 @@ pub(crate) fn worst_field_flux(field: &dyn Field, kink: impl Fn(DVec3) -> f64, s
     worst_flux(velocity, kink, size)
 }
 
-/// What adaptive quadrature may leave of the flux of a divergence-free field, jumps of its tangential velocity included. A
-/// field whose gradient is not that of its distance shows ten times as much and more.
+/// Bound on the quadrature error of the relative flux of a divergence-free field, including jumps
+/// of its tangential velocity. A field whose gradient is not that of its distance exceeds this at
+/// least tenfold.
 pub(crate) const QUADRATURE_NOISE: f64 = 1e-4;
 
 #[test]
-fn the_suite_sees_a_source() {
+fn detects_a_source() {
     let with_source = |strength: f64| {
         let velocity = move |points: &PointBlock| {
             let points: Vec<DVec3> =

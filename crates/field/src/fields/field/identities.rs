@@ -1,4 +1,4 @@
-//! The identities of vector calculus that the fields rest on, by central differences at scattered points.
+//! Vector identities used by the fields, checked by central differences at scattered points.
 
 use glam::DVec3;
 
@@ -8,14 +8,15 @@ use crate::fields::{
     rigid_motion::RigidMotion,
 };
 
-/// Half the distance between the points of differences. Truncation is its square times third derivatives of the order of a
-/// thousand (the profile's, over a support of 0.6), rounding 1e-16 over it.
+/// Step of the central differences. The truncation error is its square times third derivatives of
+/// about a thousand (those of the profile over a support of 0.6); the rounding error is 1e-16 over
+/// the step.
 const STEP: f64 = 1e-4;
 const TOLERANCE: f64 = 2e-5;
 
 const V: DVec3 = DVec3::new(0.3, -0.2, 1.0);
 const OMEGA: DVec3 = DVec3::new(0.4, 0.7, -0.3);
-/// Of length one.
+/// A unit vector.
 const AXIS: DVec3 = DVec3::new(1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0);
 
 fn derivatives(field: &dyn Fn(DVec3) -> DVec3, point: DVec3) -> [DVec3; 3] {
@@ -44,8 +45,8 @@ fn assert_everywhere(left: impl Fn(DVec3) -> DVec3, right: impl Fn(DVec3) -> DVe
     }
 }
 
-/// g(d/R) and its gradient for a sphere of radius 0.4.
-fn share(point: DVec3) -> (f64, DVec3) {
+/// Weight g(d/R) and its gradient for a sphere of radius 0.4.
+fn weight(point: DVec3) -> (f64, DVec3) {
     let (value, slope) = Profile::Quintic.evaluate((point.length() - 0.4) / 0.6);
     (value, slope / 0.6 * point.normalize_or_zero())
 }
@@ -64,7 +65,7 @@ fn potentials_of_rigid_motions() {
 }
 
 #[test]
-fn equations_12_4_to_12_6_turn_about_the_axis() {
+fn equations_12_4_to_12_6_rotate_about_the_axis() {
     let double = |x: DVec3| x.cross(OMEGA.cross(x));
     assert_everywhere(|x| x.cross(OMEGA).cross(x), double);
     assert_everywhere(|x| curl(&double, x), |x| -3.0 * OMEGA.cross(x));
@@ -78,7 +79,7 @@ fn equations_12_4_to_12_6_turn_about_the_axis() {
 }
 
 #[test]
-fn twists_and_swirls_of_any_rate() {
+fn twists_and_swirls_of_varying_rate() {
     let rate = |height: f64| libm::sin(2.0 * height);
     let distance = |x: DVec3| AXIS.cross(x).length_squared();
     assert_everywhere(
@@ -99,38 +100,38 @@ fn products_of_gradients() {
         |x| gradient(&|r| w.dot(r), x).cross(gradient(&|r| w.cross(r).length_squared(), x)),
         |x| 2.0 * w.length_squared() * w.cross(x),
     );
-    // With N, B and T = N×B constant: the product form with g is the curl form with g².
+    // For constant N, B and T = N×B, the product form with g equals the curl form with g².
     let n = AXIS.any_orthonormal_vector();
     let b = AXIS.cross(n);
     let product = |x: DVec3| {
-        let [alpha, beta] = [n, b].map(|side| gradient(&|r| share(r).0 * side.dot(r), x));
+        let [alpha, beta] = [n, b].map(|side| gradient(&|r| weight(r).0 * side.dot(r), x));
         alpha.cross(beta)
     };
-    let squared = |r: DVec3| share(r).0 * share(r).0;
+    let squared = |r: DVec3| weight(r).0 * weight(r).0;
     assert_everywhere(product, |x| curl(&|r| 0.5 * squared(r) * (n.dot(r) * b - b.dot(r) * n), x));
     assert_everywhere(product, |x| curl(&|r| 0.5 * squared(r) * AXIS.cross(r), x));
 }
 
 #[test]
-fn the_product_rule_is_the_curl_and_keeps_the_normal_speed() {
+fn the_product_rule_gives_the_curl_and_preserves_the_normal_speed() {
     let motion = RigidMotion { center: DVec3::new(0.1, 0.0, -0.2), linear: V, angular: OMEGA };
-    let potential = |x: DVec3| share(x).0 * motion.potential(x).0;
+    let potential = |x: DVec3| weight(x).0 * motion.potential(x).0;
     let velocity = |x: DVec3| {
-        let ((value, gradient), (potential, curl)) = (share(x), motion.potential(x));
+        let ((value, gradient), (potential, curl)) = (weight(x), motion.potential(x));
         curl_of_product(value, gradient, potential, curl)
     };
     assert_everywhere(|x| curl(&potential, x), velocity);
     for point in scattered_points(100, 1.0) {
         assert!(divergence(&velocity, point).abs() < 2.0 * TOLERANCE, "{point}");
         let normal = point.normalize();
-        let expected = share(point).0 * normal.dot(motion.velocity(point));
-        // A few roundings: the second term is normal to the normal.
+        let expected = weight(point).0 * normal.dot(motion.velocity(point));
+        // Within a few roundings: the second term is orthogonal to the normal.
         assert!((normal.dot(velocity(point)) - expected).abs() < 1e-13, "{point}");
     }
 }
 
 #[test]
-fn another_origin_of_the_gauge_adds_a_gradient() {
+fn a_different_gauge_origin_adds_a_gradient() {
     let a = DVec3::new(0.3, -0.4, 0.5);
     let motion = RigidMotion { center: DVec3::ZERO, linear: V, angular: OMEGA };
     let k = -0.5 * V.cross(a) - OMEGA.cross(a).cross(a) / 6.0;

@@ -1,4 +1,7 @@
 //! The field of a jointed tool at one instant.
+//!
+//! The parent module states the formula. Potentials are accumulated per bone: the motion of a bone
+//! is the sum of its parts, each the rotation about one joint on the path to the root.
 
 use std::sync::Arc;
 
@@ -7,12 +10,12 @@ use isochore_mesh::{Aabb, DistanceBlock, LANES, PointBlock};
 
 use super::{
     JointedTool,
-    partition::{Share, partition, softened},
+    partition::{BoneWeight, partition, softened},
     smooth_minimum::{Scalar, smooth_minimum},
 };
 use crate::fields::{Field, FieldBlock, NO_CORE, Pose, WeightedPotential, pose::Placement, rigid_motion::RigidMotion};
 
-/// All bones where they are, and how they move.
+/// All bones at one instant, with their motions.
 #[derive(Debug, Clone)]
 pub(super) struct JointedField {
     pub(super) tool: Arc<JointedTool>,
@@ -20,37 +23,40 @@ pub(super) struct JointedField {
     pub(super) bounds: Aabb,
 }
 
-/// A bone where it is, in world coordinates.
+/// A bone at one instant, in world coordinates.
 #[derive(Debug, Clone)]
 pub(super) struct PlacedBone {
     /// World from tool.
     pub(super) placement: Placement,
-    /// World now from world at rest.
+    /// Current world position from the position at rest.
     pub(super) rest: Pose,
-    /// How the bone moves.
+    /// Motion of the bone.
     pub(super) motion: RigidMotion,
-    /// That motion in parts, from that of the whole to the turn about the bone's own joint.
+    /// The same motion in parts, from that of the whole tool to the rotation about the bone's own
+    /// joint.
     pub(super) parts: Vec<MotionPart>,
-    /// Box that holds the support.
+    /// Box of the support.
     pub(super) support: Aabb,
 }
 
-/// A part of the motion of all bones that one joint carries, with its vector potential in two gauges.
+/// A part of the motion, common to all bones that one joint carries, with its vector potential in
+/// two gauges.
 ///
-/// All these bones share the part and both its potentials, so that what is between them does not shear.
+/// Since these bones have both potentials in common, the material between them does not shear.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MotionPart {
-    /// About a point near the middle of those bones: the gauge with the least flow back around them.
+    /// The motion about a point near the middle of those bones: the gauge with the least return
+    /// flow around them.
     pub(super) centered: RigidMotion,
-    /// The joint about which they turn; none for the motion of the whole.
+    /// Joint that the bones rotate about; `None` for the motion of the whole tool.
     pub(super) joint: Option<DVec3>,
 }
 
 impl MotionPart {
-    /// The potential in the gauge of the joint's axis, −½ ρ² ω with ρ the distance from the axis.
+    /// Potential in the gauge of the joint's axis, −½ ρ² ω, with the distance ρ from the axis.
     ///
-    /// It vanishes to second order at the joint. Turns about the same axis have the same potential, wherever their joints lie
-    /// on it.
+    /// It vanishes to second order at the joint. Rotations about the same axis have the same
+    /// potential, independent of the position of their joints on the axis.
     fn joint_potential(&self, point: DVec3) -> DVec3 {
         match self.joint {
             Some(joint) => -0.5 * self.squared_distance_from_axis(point - joint) * self.centered.angular,
@@ -58,15 +64,15 @@ impl MotionPart {
         }
     }
 
-    /// χ, whose gradient leads from the gauge of the joint's axis to the centered one.
+    /// χ, whose gradient changes the gauge of the joint's axis to the centered gauge.
     ///
-    /// From the joint o to o + a, with r = x − o:
+    /// From the joint o to the center o + a, with r = x − o:
     ///
     /// ```text
     /// χ = −⅙ ((ω×a)×a)·r − ⅙ (ω×r)·(a×r) + ⅙ (ω·r) ρ²
     /// ```
     ///
-    /// where the last leads from the gauge of the axis to that of the joint.
+    /// The last term changes the gauge of the axis to that of the joint.
     fn gauge(&self, point: DVec3) -> f64 {
         let Some(joint) = self.joint else { return 0.0 };
         let angular = self.centered.angular;
@@ -85,7 +91,7 @@ impl MotionPart {
 }
 
 impl PlacedBone {
-    /// The potential of the bone's motion, all its parts centered, and its curl.
+    /// Potential of the bone's motion with all parts centered, and its curl.
     fn potential(&self, point: DVec3) -> (DVec3, DVec3) {
         self.parts.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, part| {
             let (potential, curl) = part.centered.potential(point);
@@ -93,7 +99,7 @@ impl PlacedBone {
         })
     }
 
-    /// The potential of the bone's motion in the gauge of the joints that carry it.
+    /// Potential of the bone's motion in the gauge of the joints that carry it.
     fn joint_potential(&self, point: DVec3) -> DVec3 {
         self.parts.iter().map(|part| part.joint_potential(point)).sum()
     }
@@ -105,7 +111,8 @@ impl PlacedBone {
 }
 
 impl JointedField {
-    /// Distances of all bones at `points`, with gradients in world axes; infinite where too far to matter.
+    /// Distances of all bones at `points`, with gradients in world axes. The distance of a bone
+    /// beyond its influence is infinite.
     fn distances(&self, points: &PointBlock) -> Vec<DistanceBlock> {
         let influence = self.tool.influence;
         let bones = self.bones.iter().zip(self.tool.bones());
@@ -136,7 +143,7 @@ impl JointedField {
         bones.map(sample).collect()
     }
 
-    /// u, the smooth minimum of the scaled distances in one lane.
+    /// u, the smooth minimum of the scaled distances, in one lane.
     fn scaled_distance(&self, distances: &[DistanceBlock], lane: usize) -> Scalar {
         let scaled = distances.iter().zip(self.tool.bones()).map(|(distance, bone)| {
             let support = bone.tool.support();
@@ -146,25 +153,26 @@ impl JointedField {
         scaled.fold(far, |union, distance| smooth_minimum(union, distance, self.tool.crease))
     }
 
-    /// Lower bound on the distance from the support to a point beyond it, whose scaled distance is `scaled`.
+    /// Lower bound on the distance of a point beyond the support with the scaled distance `scaled`.
     fn clearance(&self, scaled: f64, distances: &[DistanceBlock], lane: usize, point: DVec3) -> f64 {
         let near = (scaled - 1.0) / self.tool.steepness;
-        // Of bones out of reach only the box is known.
+        // For bones beyond their influence only the box is known.
         let far = self.bones.iter().zip(distances).filter(|(_, distance)| distance.value[lane] == f64::INFINITY);
         far.map(|(bone, _)| bone.support.distance(point)).fold(near, f64::min)
     }
 
-    /// The blended potential A at `point`, and its curl.
-    fn potential(&self, shares: &[Share], point: DVec3) -> (DVec3, DVec3) {
-        if let [share] = shares {
-            return self.bones[share.bone].potential(point);
+    /// Blended potential A at `point`, and its curl.
+    fn potential(&self, weights: &[BoneWeight], point: DVec3) -> (DVec3, DVec3) {
+        if let [only] = weights {
+            return self.bones[only.bone].potential(point);
         }
         let mut sum = (DVec3::ZERO, DVec3::ZERO);
-        for share in shares {
-            let bone = &self.bones[share.bone];
+        for weight in weights {
+            let bone = &self.bones[weight.bone];
             let (potential, curl) = bone.potential(point);
-            sum.0 += share.value * potential + bone.gauge(point) * share.gradient;
-            sum.1 += share.value * curl + share.gradient.cross(bone.joint_potential(point));
+            // wᵢ Aᵢ + χᵢ ∇wᵢ equals wᵢ (Aᵢ − ∇χᵢ) + ∇(wᵢ χᵢ), where Aᵢ − ∇χᵢ is the joint potential.
+            sum.0 += weight.value * potential + bone.gauge(point) * weight.gradient;
+            sum.1 += weight.value * curl + weight.gradient.cross(bone.joint_potential(point));
         }
         sum
     }
@@ -174,7 +182,7 @@ impl Field for JointedField {
     fn evaluate_into(&self, points: &PointBlock, out: &mut FieldBlock) {
         let distances = self.distances(points);
         let mut softened_distances: Vec<Scalar> = Vec::with_capacity(distances.len());
-        let mut shares = Vec::with_capacity(distances.len());
+        let mut weights = Vec::with_capacity(distances.len());
         for lane in 0..LANES {
             let point = points.get(lane);
             let (scaled, slope) = self.scaled_distance(&distances, lane);
@@ -189,10 +197,10 @@ impl Field for JointedField {
             softened_distances.extend(
                 bones.map(|(distance, radius)| softened((distance.value[lane], distance.gradient.get(lane)), *radius)),
             );
-            partition(&softened_distances, |a, b| self.tool.blend(a, b), self.tool.widest, &mut shares);
-            let (potential, curl) = self.potential(&shares, point);
-            let core = match shares[..] {
-                [alone] if weight == 1.0 && gradient == DVec3::ZERO => alone.bone as u32,
+            partition(&softened_distances, |a, b| self.tool.blend(a, b), self.tool.widest, &mut weights);
+            let (potential, curl) = self.potential(&weights, point);
+            let core = match weights[..] {
+                [only] if weight == 1.0 && gradient == DVec3::ZERO => only.bone as u32,
                 _ => NO_CORE,
             };
             out.set_inside(lane, WeightedPotential { weight, gradient, potential, curl }, core);

@@ -1,4 +1,7 @@
-//! The way of a jointed tool from one posture to the next.
+//! Motion of a jointed tool from one posture to the next.
+//!
+//! The root moves along a screw. Bone i has the rotation Qᵢ exp(t ωᵢ) relative to its parent, so
+//! its angular velocity ωᵢ is constant in its own axes.
 
 use std::sync::Arc;
 
@@ -13,13 +16,15 @@ use crate::fields::{
     BodyTwist, Field, MovingField, Pose, pose::Placement, rigid_motion::RigidMotion, rotation_from_vector,
 };
 
-/// The whole moves along a screw, and every bone turns about its joint at a constant rate.
+/// A motion in which the whole tool moves along a screw and every bone rotates about its joint at a
+/// constant rate.
 #[derive(Debug, Clone)]
 pub(super) struct PostureChange {
     tool: Arc<JointedTool>,
     start: Posture,
     root: BodyTwist,
-    /// Turn of each bone past its parent in the bone's own axes, radians per unit of time.
+    /// Angular velocity of each bone relative to its parent, in the bone's own axes, radians per
+    /// unit of time.
     turns: Vec<DVec3>,
 }
 
@@ -30,7 +35,8 @@ impl PostureChange {
         end: &Posture,
         key: usize,
     ) -> Result<Self, JointedToolError> {
-        // A pause: the logarithm of a rotation and its inverse would leave a rounding that moves what it should not.
+        // If nothing moves, the logarithm of a rotation times its inverse would leave a rounding
+        // error that moves points at rest.
         let twist = |start: &Pose, end: &Pose, bone: Option<usize>| {
             let rest = BodyTwist { linear: DVec3::ZERO, angular: DVec3::ZERO };
             if start == end { Ok(rest) } else { start.twist_to(end).ok_or(JointedToolError::HalfTurn { key, bone }) }
@@ -44,7 +50,7 @@ impl PostureChange {
         Ok(Self { tool: Arc::clone(tool), start: start.clone(), root, turns })
     }
 
-    /// World now from world at rest for each bone.
+    /// Current world position from the position at rest, for each bone.
     fn poses(&self, time: f64) -> Vec<Pose> {
         let root = self.start.root.moved(&self.root, time);
         let mut poses = vec![root; self.tool.bones().len()];
@@ -58,8 +64,8 @@ impl PostureChange {
         poses
     }
 
-    /// The middle, in the world now, of each bone with all that it carries: the mean of their centroids, weighted by the
-    /// volumes of their boxes.
+    /// Middle of each bone with all bones that it carries, in current world coordinates: the mean
+    /// of the centroids, weighted by the volumes of the boxes.
     fn middles(&self, poses: &[Pose]) -> Vec<DVec3> {
         let bones = self.tool.bones();
         let mut sums: Vec<(DVec3, f64)> = bones
@@ -80,24 +86,26 @@ impl PostureChange {
         sums.into_iter().map(|(sum, weight)| sum / weight).collect()
     }
 
-    /// Upper bound on the speed of the points of each bone's box, grown by a margin, over the whole time.
+    /// Upper bound, over all times, on the speed of the points of each bone's box, expanded by a
+    /// margin.
     fn top_speed(&self, margin: impl Fn(usize) -> f64) -> f64 {
         let bones = self.tool.bones();
         let speed = |index: usize| {
             let bone = &bones[index];
             let bounds = bone.tool.distance().bounds().expanded(margin(index));
             let corners = bounds.corners().map(|corner| bone.rest.transform(corner).distance(bone.joint));
-            // Joints keep their distance from the next, so that the way along them bounds the distance from each.
+            // Successive joints keep their distance, so the length of the chain bounds the distance
+            // from each.
             let mut reach = corners.into_iter().fold(0.0, f64::max);
             let mut speed = 0.0;
-            let mut at = index;
+            let mut ancestor = index;
             loop {
-                speed += self.turns[at].length() * reach;
-                let Some(parent) = bones[at].parent else { break };
-                reach += bones[at].joint.distance(bones[parent].joint);
-                at = parent;
+                speed += self.turns[ancestor].length() * reach;
+                let Some(parent) = bones[ancestor].parent else { break };
+                reach += bones[ancestor].joint.distance(bones[parent].joint);
+                ancestor = parent;
             }
-            speed + self.root.velocity(bones[at].joint).length() + self.root.angular.length() * reach
+            speed + self.root.velocity(bones[ancestor].joint).length() + self.root.angular.length() * reach
         };
         (0..bones.len()).map(speed).fold(0.0, f64::max)
     }
@@ -109,7 +117,7 @@ impl MovingField for PostureChange {
         let poses = self.poses(time);
         let root = self.start.root.moved(&self.root, time);
         let angular = root.rotation * self.root.angular;
-        // The motion of the whole tool's frame: the velocity of the world's origin.
+        // Motion of the whole tool, described about the origin of the world.
         let linear = root.rotation * self.root.linear - angular.cross(root.translation);
         let frame = RigidMotion { center: DVec3::ZERO, linear, angular };
 
@@ -124,16 +132,7 @@ impl MovingField for PostureChange {
             let turn = rest.rotation * self.turns[index];
             let motion =
                 RigidMotion { center: joint, linear: carrier.velocity(joint), angular: carrier.angular + turn };
-            // The first bone's own turn is one of the whole.
-            let part = match parent.and_then(|parent| parent.parts.last()) {
-                None => MotionPart { centered: motion.about(middles[index]), joint: None },
-                Some(part) => {
-                    let axis = turn.normalize_or_zero();
-                    let along = axis.dot(part.centered.center - middles[index]) * axis;
-                    let turn = RigidMotion { center: joint, linear: DVec3::ZERO, angular: turn };
-                    MotionPart { centered: turn.about(middles[index] + along), joint: Some(joint) }
-                }
-            };
+            let part = own_part(parent.and_then(|parent| parent.parts.last()), &motion, turn, middles[index]);
             let parts = parent.map_or(&[][..], |parent| &parent.parts).iter().copied().chain([part]).collect();
             let pose = Pose {
                 rotation: (rest.rotation * bone.rest.rotation).normalize(),
@@ -164,4 +163,18 @@ impl MovingField for PostureChange {
     fn feature_size(&self) -> f64 {
         self.tool.bones().iter().map(|bone| bone.tool.feature_size()).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// The part that a bone's own joint adds to the `motion` of the bone, which is about that joint:
+/// the rotation `turn`, in a gauge centered near the `middle` of the bones that the joint carries.
+fn own_part(carrier: Option<&MotionPart>, motion: &RigidMotion, turn: DVec3, middle: DVec3) -> MotionPart {
+    // The root bone's own rotation is a motion of the whole tool.
+    let Some(carrier) = carrier else { return MotionPart { centered: motion.about(middle), joint: None } };
+    // Along the axis of the rotation the center is that of the carrier, so that parallel fingers
+    // which bend alike have one potential.
+    let axis = turn.normalize_or_zero();
+    let along = axis.dot(carrier.centered.center - middle) * axis;
+    let joint = motion.center;
+    let rotation = RigidMotion { center: joint, linear: DVec3::ZERO, angular: turn };
+    MotionPart { centered: rotation.about(middle + along), joint: Some(joint) }
 }

@@ -17,7 +17,7 @@ fn capsule(half_length: f64, profile: Profile) -> Arc<Tool> {
     Arc::new(Tool::new(Arc::new(Capsule::new(RADIUS, half_length).unwrap()), SUPPORT, profile).unwrap())
 }
 
-/// A finger along z of two bones with the joint at the origin.
+/// A finger of two bones along z, with the joint at the origin.
 pub(crate) fn finger() -> Arc<JointedTool> {
     let tool = capsule(0.25, Profile::Quintic);
     let bone = |z: f64, parent: Option<usize>| Bone {
@@ -29,7 +29,7 @@ pub(crate) fn finger() -> Arc<JointedTool> {
     Arc::new(JointedTool::new(vec![bone(-0.25, None), bone(0.25, Some(0))]).unwrap())
 }
 
-/// A palm with two fingers side by side, the bones not in the order of the tree.
+/// A palm with two parallel fingers; the bones are not in tree order.
 pub(crate) fn hand() -> Arc<JointedTool> {
     let palm = Ellipsoid::new(DVec3::new(0.4, 0.3, 0.15)).unwrap();
     let palm = Arc::new(Tool::new(Arc::new(palm), 0.3, Profile::Quintic).unwrap());
@@ -59,7 +59,7 @@ pub(crate) fn root() -> Pose {
     Pose { rotation: rotation_from_vector(DVec3::new(0.2, -0.3, 0.4)), translation: DVec3::new(0.1, 0.2, -0.1) }
 }
 
-/// The finger bends while the whole moves; the hand closes while the whole moves.
+/// A finger that bends while the whole moves, and a hand that closes while the whole moves.
 pub(crate) fn motions() -> [(Arc<JointedTool>, Vec<Posture>); 2] {
     let closed = [[0.7, 0.0, 0.1], [0.8, 0.1, 0.0], [0.9, 0.0, 0.0], [0.1, 0.2, 0.0], [0.6, 0.0, -0.1]];
     [
@@ -81,7 +81,8 @@ pub(crate) fn evaluate(field: &dyn Field, point: DVec3) -> FieldBlock {
     block
 }
 
-/// World now from world at rest, from the definition: each bone's turn about its joint, then what its parent does.
+/// Current world position of a point at rest, from the definition: each bone's rotation about its
+/// joint, then the motion of its parent.
 pub(crate) fn pose_of(tool: &JointedTool, posture: &Posture, bone: usize, point: DVec3) -> DVec3 {
     let Bone { joint, parent, .. } = tool.bones()[bone];
     let turned = joint + posture.turns[bone] * (point - joint);
@@ -91,27 +92,29 @@ pub(crate) fn pose_of(tool: &JointedTool, posture: &Posture, bone: usize, point:
     }
 }
 
-/// On the surface of a bone, away from its joints, there is nothing else than its own motion, not even close to its neighbor.
+/// On the surface of a bone, away from its joints, the field is exactly its own motion, even next
+/// to another bone.
 #[test]
-fn a_finger_is_not_moved_by_the_finger_beside_it() {
+fn a_finger_does_not_move_its_neighbor() {
     let (tool, keys) = &motions()[1];
     let field = tool.motions(keys).unwrap()[0].at(0.0);
     for index in 0..32 {
         let angle = 0.2 * f64::from(index);
-        // 0.06 is between the two fingers, and the middle of the first phalanx 2.5 radii from its joints.
+        // The gap between the fingers is 0.06; the middle of the first phalanx is 2.5 radii from
+        // its joints.
         let point = DVec3::new(0.13 + 0.0999 * libm::cos(angle), 0.53, 0.0999 * libm::sin(angle));
         assert_eq!(evaluate(&*field, point).core[0], 4, "{point}");
     }
 }
 
 #[test]
-fn what_two_bones_share_moves_once_and_not_twice() {
+fn material_within_two_bones_moves_at_single_speed() {
     let tool = finger();
     let shift = DVec3::new(0.0, 1.0, 0.0);
     let keys = [posture(Pose::IDENTITY, &[[0.0; 3]; 2]), posture(Pose::at(shift), &[[0.0; 3]; 2])];
     let joined = tool.motions(&keys).unwrap()[0].at(0.5);
     let joint = 0.5 * shift;
-    // Roundings of the parts' sum.
+    // Rounding in the sum of the parts.
     assert!((evaluate(&*joined, joint).velocity.get(0).y - 1.0).abs() < 1e-14);
     let twist = BodyTwist { linear: shift, angular: DVec3::ZERO };
     let alone = |bone: &Bone| MovingTool::new(Arc::clone(&bone.tool), bone.rest, twist).at(0.5);
@@ -120,7 +123,7 @@ fn what_two_bones_share_moves_once_and_not_twice() {
 }
 
 #[test]
-fn bones_that_move_as_one_are_one_rigid_body() {
+fn bones_with_equal_motion_form_one_rigid_body() {
     for (tool, _) in motions() {
         let bones = tool.bones().len();
         let still = vec![[0.0; 3]; bones];
@@ -134,7 +137,8 @@ fn bones_that_move_as_one_are_one_rigid_body() {
             if block.weight.value[0] == 1.0 {
                 let local = now.rotation.conjugate() * (point - now.translation);
                 let expected = now.rotation * twist.velocity(local);
-                // Roundings near 1e-16 of potentials, times gradients of the shares up to 1/ε = 160.
+                // Rounding near 1e-16 of potentials, times gradients of the weights up to 1/ε =
+                // 160.
                 assert!(block.velocity.get(0).distance(expected) < 5e-13, "{point}");
                 inside += 1;
             }
@@ -144,7 +148,7 @@ fn bones_that_move_as_one_are_one_rigid_body() {
 }
 
 #[test]
-fn one_bone_is_the_tool_itself() {
+fn a_single_bone_has_the_field_of_its_tool() {
     let tool = capsule(0.3, Profile::Contact);
     let rest =
         Pose { rotation: rotation_from_vector(DVec3::new(0.3, 0.1, 0.0)), translation: DVec3::new(0.1, 0.0, 0.2) };
@@ -156,7 +160,7 @@ fn one_bone_is_the_tool_itself() {
     let alone = MovingTool::new(tool, rest, rest.twist_to(&end).unwrap()).at(0.0);
     for point in scattered_points(500, 0.8) {
         let [a, b] = [&*field, &*alone].map(|field| evaluate(field, point));
-        // The same formula, in world and in tool axes.
+        // Both evaluate the same formula, one in world and one in tool axes.
         assert!(a.velocity.get(0).distance(b.velocity.get(0)) < 1e-14, "{point}");
         assert!(a.potential.get(0).distance(b.potential.get(0)) < 1e-15, "{point}");
     }
@@ -167,8 +171,9 @@ fn the_field_is_the_curl_of_its_potential_and_has_no_net_flux() {
     for (tool, keys) in motions() {
         let field = tool.motions(&keys).unwrap()[0].at(0.4);
         let seen = deviation(&*field, &scattered_points(300, 0.9), 1e-5);
-        // h²/6 of third derivatives of blends as narrow as ε = 0.006 to 0.01, times 1e-10/ε³, where a point meets one at all;
-        // the second derivatives of the distances jump where a capsule's end begins.
+        // Truncation: h²/6 of third derivatives of blends as narrow as ε = 0.006 to 0.01, that is
+        // 1e-10/ε³, at points inside a blend. The second derivatives of the distances jump where
+        // the cap of a capsule begins.
         assert!(seen.curl < 1e-4 && seen.divergence < 1e-3 && seen.gradient < 1e-4, "{seen:?}");
         let flux = worst_field_flux(&*field, |_| f64::INFINITY, 0.5);
         assert!(flux < QUADRATURE_NOISE, "{flux:e}");
@@ -176,7 +181,7 @@ fn the_field_is_the_curl_of_its_potential_and_has_no_net_flux() {
 }
 
 #[test]
-fn what_two_bones_share_at_a_joint_is_hardly_faster_than_either() {
+fn material_at_a_joint_is_hardly_faster_than_either_bone() {
     let tool = finger();
     let keys = [posture(Pose::IDENTITY, &[[0.0; 3]; 2]), posture(Pose::IDENTITY, &[[0.0; 3], [1.0, 0.0, 0.0]])];
     let field = tool.motions(&keys).unwrap()[0].at(0.0);
@@ -186,12 +191,12 @@ fn what_two_bones_share_at_a_joint_is_hardly_faster_than_either() {
         fastest = fastest.max(evaluate(&*field, point).velocity.get(0).length());
         rigid = rigid.max(DVec3::X.cross(point).length());
     }
-    // 1.15 times: what the gauge of the joint's axis adds where the shares change.
+    // The ratio is 1.15: the gauge of the joint's axis adds speed where the weights change.
     assert!(fastest < 1.2 * rigid && rigid > 0.95 * RADIUS, "{fastest} {rigid}");
 }
 
 #[test]
-fn speeds_are_bounds() {
+fn speeds_stay_within_their_bounds() {
     for (tool, keys) in motions() {
         for (leg, motion) in tool.motions(&keys).unwrap().iter().enumerate() {
             for (bone, placed) in tool.bones().iter().enumerate() {
@@ -209,7 +214,7 @@ fn speeds_are_bounds() {
 }
 
 #[test]
-fn bones_that_are_no_tree_are_refused() {
+fn rejects_bones_that_are_not_a_tree() {
     let bone = |parent| Bone { parent, ..finger().bones()[0].clone() };
     let error = |parents: &[Option<usize>]| JointedTool::new(parents.iter().map(|&p| bone(p)).collect()).unwrap_err();
     assert_eq!(error(&[]), JointedToolError::NoFirstBone);
@@ -222,7 +227,7 @@ fn bones_that_are_no_tree_are_refused() {
 }
 
 #[test]
-fn a_sampled_bone_must_reach_as_far_as_is_said() {
+fn a_sampled_bone_needs_the_stated_reach() {
     use isochore_mesh::{DistanceField, DistanceFieldOptions, NoProgress, Padding, primitives};
     let mesh = primitives::icosphere(0.2, 2);
     let shapes = [(mesh.bounds(), SUPPORT); 2];
@@ -240,7 +245,7 @@ fn a_sampled_bone_must_reach_as_far_as_is_said() {
 }
 
 #[test]
-fn keys_that_leave_the_way_open_are_refused() {
+fn rejects_keys_with_an_ambiguous_motion() {
     let tool = finger();
     let half = [std::f64::consts::PI, 0.0, 0.0];
     let still = posture(Pose::IDENTITY, &[[0.0; 3]; 2]);

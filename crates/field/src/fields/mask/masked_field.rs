@@ -1,4 +1,4 @@
-//! A field whose potential is multiplied by a mask.
+//! A field whose potential is multiplied by a mask: V′ = curl(m P) = m V + ∇m × P.
 
 use std::sync::Arc;
 
@@ -7,11 +7,11 @@ use isochore_mesh::{Aabb, PointBlock};
 
 use crate::fields::{Field, FieldBlock, Mask, MovingField, Pose, ScalarBlock};
 
-/// Instants at which the speed of the masked field is looked up, at most. More costs time for every stroke; fewer can miss the
-/// moment at which a tool passes a pin.
+/// Largest number of instants at which the speed of the masked field is sampled. Larger: every
+/// stroke takes longer. Smaller: the moment when a tool passes a pin can be missed.
 const MAX_INSTANTS: usize = 32;
 
-/// A field that a mask holds back.
+/// A field with a mask.
 #[derive(Debug, Clone)]
 pub(crate) struct MaskedField {
     field: Arc<dyn MovingField>,
@@ -20,21 +20,22 @@ pub(crate) struct MaskedField {
 }
 
 impl MaskedField {
-    /// `field` with its potential multiplied by what `mask` leaves free; `bounds` is the box of what is to be carried.
+    /// `field` with its potential multiplied by `mask`. `bounds` is the box of the points to
+    /// advect.
     pub(crate) fn new(field: Arc<dyn MovingField>, mask: Arc<Mask>, bounds: Aabb) -> Self {
         let mut masked = Self { field, mask, core_speed: 0.0 };
         masked.core_speed = masked.field.core_speed().max(masked.speed_at_probes(bounds));
         masked
     }
 
-    /// The largest speed found where the mask changes, in and around a box: between what is held and what is carried, the
-    /// flow passes all the faster the narrower that is.
+    /// Largest speed found where the mask varies, in and around a box. Between held and moving
+    /// material the flow passes through a gap, and its speed grows as the gap narrows.
     fn speed_at_probes(&self, bounds: Aabb) -> f64 {
         let around = bounds.expanded(bounds.size().length());
         let mut probes = self.mask.probes();
         probes.retain(|&probe| around.distance(probe) == 0.0);
         let steps = self.field.core_speed() / self.field.feature_size();
-        // As a float, because the ratio may be infinite or no number at all.
+        // Clamped as a float, because the ratio may be infinite or NaN.
         let instants = steps.ceil().clamp(1.0, MAX_INSTANTS as f64) as usize;
         let speeds = (0..=instants).map(|instant| {
             let field = self.at(instant as f64 / instants as f64);
@@ -67,6 +68,7 @@ impl MovingField for MaskedField {
     }
 }
 
+/// A masked field at one instant.
 #[derive(Debug)]
 struct MaskedInstant {
     field: Box<dyn Field>,

@@ -1,18 +1,21 @@
 //! A field made symmetric about planes.
 //!
-//! The mirror image of a field has the potential Pᴹ(x) = −M P(Mx): a potential is a pseudovector. The plain sum P + Pᴹ would
-//! carry at twice the speed where a tool and its image overlap, so the shares s and sᴹ of the full motion divide it:
+//! A potential is a pseudovector, so the mirror image of a field has the potential Pᴹ(x) = −M
+//! P(Mx). In the sum P + Pᴹ, the material within both a tool and its image would move at twice the
+//! speed. The weights s and sᴹ of the full motion correct this:
 //!
 //! ```text
 //! P_sym = (P + Pᴹ) / (1 + s sᴹ)
 //! ```
 //!
-//! This is P where the image has no share and the mean of both where both are one. It is a potential, so its curl is
-//! divergence-free; on the plane its tangential part vanishes, so nothing flows through.
+//! This equals P where sᴹ is zero, and the mean of both where both weights are one. The field is
+//! the curl of P_sym, so it is divergence-free. On the plane, the tangential part of P_sym
+//! vanishes, so nothing flows through.
 //!
-//! The mean of two cores that move alike is their motion only if both potentials are about one center; so the center of a
-//! rigid body's gauge is drawn onto the plane while the support reaches through it. That adds a gradient to the potential,
-//! which changes no velocity but that where the share fades.
+//! The mean of two cores with equal motion is that motion only if both potentials have the same
+//! center. The center of a rigid body's gauge is therefore shifted onto the plane while the support
+//! intersects it. The shift adds a gradient to the potential, which changes the velocity only where
+//! the weight varies.
 
 use std::{any::Any, sync::Arc};
 
@@ -41,11 +44,12 @@ impl MirroredField {
 impl MovingField for MirroredField {
     fn at(&self, time: f64) -> Box<dyn Field> {
         let field = self.field.at(time);
-        let gauge = rigid_gauge(&*self.field, time).map(|gauge| (gauge, drawn_center(&gauge, &self.planes)));
+        let gauge = rigid_gauge(&*self.field, time).map(|gauge| (gauge, shifted_center(&gauge, &self.planes)));
         Box::new(MirroredInstant { field, planes: Arc::clone(&self.planes), gauge })
     }
 
-    /// A mirror image comes closer to a point as fast as the field comes closer to the point's mirror image.
+    /// A mirror image approaches a point at the speed at which the field approaches the mirror
+    /// image of the point.
     fn approach_speed(&self) -> f64 {
         self.field.approach_speed()
     }
@@ -64,34 +68,36 @@ impl MovingField for MirroredField {
     }
 }
 
-/// The gauge of the potential at `time`, or `None` if the field is not that of one rigid body.
+/// Gauge of the potential at `time`, or `None` if the field is not that of one rigid body.
 fn rigid_gauge(field: &dyn MovingField, time: f64) -> Option<RigidGauge> {
     let field: &dyn Any = field;
     field.downcast_ref::<MovingTool>()?.gauge_at(time)
 }
 
-/// The center of a gauge, moved onto every plane that the support reaches through.
-fn drawn_center(gauge: &RigidGauge, planes: &[MirrorPlane]) -> DVec3 {
+/// Center of a gauge, shifted onto every plane that the support intersects.
+fn shifted_center(gauge: &RigidGauge, planes: &[MirrorPlane]) -> DVec3 {
     planes.iter().fold(gauge.center, |center, plane| {
-        // All of the way while the body itself, and none before the support, touches the plane.
+        // Shifted fully while the body itself intersects the plane, and not at all until the
+        // support does.
         let beyond = gauge.extent_along(plane.normal()) - gauge.support;
-        let (share, _) = Profile::Quintic.evaluate((plane.distance(gauge.middle).abs() - beyond) / gauge.support);
-        center - share * plane.distance(center) * plane.normal()
+        let (fraction, _) = Profile::Quintic.evaluate((plane.distance(gauge.middle).abs() - beyond) / gauge.support);
+        center - fraction * plane.distance(center) * plane.normal()
     })
 }
 
+/// A symmetric field at one instant.
 #[derive(Debug)]
 struct MirroredInstant {
     field: Box<dyn Field>,
     planes: Arc<[MirrorPlane]>,
-    /// The gauge of a rigid body, and where its center is drawn to.
+    /// Gauge of a rigid body, and its shifted center.
     gauge: Option<(RigidGauge, DVec3)>,
 }
 
 impl MirroredInstant {
-    /// The field made symmetric about `planes`.
+    /// Evaluates the field made symmetric about `planes`.
     fn evaluate(&self, planes: &[MirrorPlane], points: &PointBlock, out: &mut FieldBlock) {
-        let Some((plane, others)) = planes.split_last() else { return self.evaluate_drawn(points, out) };
+        let Some((plane, others)) = planes.split_last() else { return self.evaluate_shifted(points, out) };
         self.evaluate(others, points, out);
         let mut reflected = PointBlock::ZERO;
         for lane in 0..LANES {
@@ -102,9 +108,9 @@ impl MirroredInstant {
         combine(plane, out, &image);
     }
 
-    /// The field itself, with the center of its gauge drawn onto the planes.
-    fn evaluate_drawn(&self, points: &PointBlock, out: &mut FieldBlock) {
-        // Near one image of the field all points are beyond the others.
+    /// Evaluates the field itself, with the center of its gauge shifted onto the planes.
+    fn evaluate_shifted(&self, points: &PointBlock, out: &mut FieldBlock) {
+        // A block near one image of the field is often entirely beyond the others.
         let bounds = self.field.bounds();
         let clearance: [f64; LANES] = std::array::from_fn(|lane| bounds.distance(points.get(lane)));
         if clearance.iter().all(|&clearance| clearance > 0.0) {
@@ -123,24 +129,25 @@ impl MirroredInstant {
     }
 }
 
-/// Puts the symmetric field into `field`; `image` is the field at the reflected points.
+/// Replaces `field` by the symmetric field. `image` is the field at the reflected points.
 fn combine(plane: &MirrorPlane, field: &mut FieldBlock, image: &FieldBlock) {
     let mut weight = ScalarBlock::ONE;
     for lane in 0..LANES {
-        let (share, other) = (field.weight.value[lane], image.weight.value[lane]);
+        let (own, other) = (field.weight.value[lane], image.weight.value[lane]);
         let gradient = field.weight.gradient.get(lane);
         let other_gradient = plane.reflect_vector(image.weight.gradient.get(lane));
-        let value = 1.0 / (1.0 + share * other);
+        let value = 1.0 / (1.0 + own * other);
         weight.value[lane] = value;
-        weight.gradient.set(lane, -value * value * (other * gradient + share * other_gradient));
+        weight.gradient.set(lane, -value * value * (other * gradient + own * other_gradient));
 
         let reflect = |vector: DVec3| plane.reflect_vector(vector);
         field.potential.set(lane, field.potential.get(lane) - reflect(image.potential.get(lane)));
         field.velocity.set(lane, field.velocity.get(lane) + reflect(image.velocity.get(lane)));
-        field.weight.value[lane] = share + other;
+        // `scale` below turns the sum of the weights into (s + sᴹ)/(1 + s sᴹ).
+        field.weight.value[lane] = own + other;
         field.weight.gradient.set(lane, gradient + other_gradient);
         field.clearance[lane] = field.clearance[lane].min(image.clearance[lane]);
-        // Closed forms on one side only would break the symmetry in the last digits.
+        // Closed forms on only one side would break the symmetry in the last digits.
         field.core[lane] = NO_CORE;
     }
     field.scale(&weight);

@@ -21,7 +21,7 @@ pub(crate) fn mirrored(mirrors: Vec<MirrorPlane>) -> Arc<Mask> {
     Arc::new(Mask::new(Vec::new(), None, mirrors).unwrap())
 }
 
-/// One for vertices of the unit sphere above this height, zero for the others.
+/// One for vertices above this height, zero for the others.
 fn cap_weights(mesh: &TriMesh, height: f64) -> Vec<f64> {
     mesh.positions.iter().map(|position| if position.z > height { 1.0 } else { 0.0 }).collect()
 }
@@ -43,7 +43,8 @@ fn a_mask_is_zero_where_it_holds_and_one_far_away() {
         if *weight == 1.0 {
             assert_eq!((factor.value, factor.gradient), (0.0, DVec3::ZERO));
         } else if libm::acos(position.z) - libm::acos(0.6) > 5.6 * edge {
-            // Growth by 1.75 radii of two edges, and one radius more; arcs are a little longer than chords.
+            // The weights grow by 1.75 radii of two edges, and the kernel adds one radius; arcs are
+            // slightly longer than chords.
             assert_eq!(factor.value, 1.0);
         }
     }
@@ -55,7 +56,7 @@ fn a_mask_is_zero_where_it_holds_and_one_far_away() {
     }
     assert_eq!(mask.factor(DVec3::Z * (1.0 + 2.1 * edge)).value, 1.0);
     let half = VertexMask::new(&sphere, &vec![0.5; sphere.positions.len()], None).unwrap();
-    // An average of equal weights, rounded.
+    // The average of equal weights, up to rounding.
     assert!((half.factor(sphere.positions[7]).value - 0.5).abs() < 1e-15);
 }
 
@@ -67,7 +68,8 @@ fn large_triangles_hold_between_their_vertices() {
     for point in scattered_points(200, 1.0) {
         let top = DVec3::new(point.x, point.y, 1.0);
         assert_eq!((mask.factor(top).value, mask.factor(top).gradient), (0.0, DVec3::ZERO), "{top}");
-        // The walls hold less and less towards the floor, and reach as far as the weights have grown and one radius more.
+        // On the walls the mask fades towards the floor. It reaches as far as the weights have
+        // grown plus one radius.
         let floor = DVec3::new(0.7 * point.x, 0.7 * point.y, -1.0);
         assert_eq!(mask.factor(floor).value, 1.0);
         let wall = mask.factor(DVec3::new(1.0, 0.7 * point.y, 0.5 * point.z)).value;
@@ -76,7 +78,7 @@ fn large_triangles_hold_between_their_vertices() {
 }
 
 #[test]
-fn masks_that_cannot_be_are_refused() {
+fn rejects_invalid_masks() {
     let slanted = vec![plane([0.0; 3], [1.0, 0.0, 0.0]), plane([0.0; 3], [1.0, 1.0, 0.0])];
     let error = Mask::new(Vec::new(), None, slanted).unwrap_err();
     assert_eq!(error, MaskError::NotPerpendicular { first: 0, second: 1 });

@@ -1,18 +1,19 @@
-//! Weights painted on vertices, made a smooth scalar of space.
+//! Weights painted on vertices, extended to a smooth function of space.
 //!
-//! Samples of the surface carry the weights w. What is held is first grown: a sample takes the largest weight near it. Then
-//! the share held at a point x is the average over the samples with a compact kernel of radius h, and fades with the coverage
-//! c where the samples end:
+//! Samples of the surface have the weights w. First the painted region grows: each sample takes the
+//! largest weight nearby. The held fraction at a point x is then the average of the weights with a
+//! compact kernel of radius h. It fades with the coverage c where the samples end:
 //!
 //! ```text
 //! m(x) = 1 − c(S) (1 − F/S),   S = Σ qᵢ K(|x − xᵢ|),   F = Σ qᵢ (1 − wᵢ) K(|x − xᵢ|),   K(r) = (1 − r²/h²)³
 //! ```
 //!
-//! The factors qᵢ make S about one on a surface however densely it is sampled. Around a held vertex all samples in reach have
-//! grown to weight one, so F and its gradient are sums of zeros there and m is exactly zero with zero gradient.
+//! The factors qᵢ make S about one on a surface, independent of the sampling density. Near a held
+//! vertex all samples within h have weight one after the growth. F and its gradient are then sums
+//! of zeros, so m is exactly zero with zero gradient.
 //!
-//! Source: normalized averages after D. Shepard, *A two-dimensional interpolation function for irregularly-spaced data*, 1968,
-//! here with a twice continuously differentiable kernel.
+//! Source: normalized averages after D. Shepard, *A two-dimensional interpolation function for
+//! irregularly-spaced data*, 1968, with a twice continuously differentiable kernel.
 
 use std::sync::Arc;
 
@@ -24,49 +25,72 @@ use rustc_hash::FxHashSet;
 use super::{Factor, MaskError};
 use crate::fields::Profile;
 
-/// The fade where none is given, as a share of the longest side of the mesh's bounding box. Larger lets the mask reach farther
-/// than what was painted; smaller shears what passes by so much that refinement spends most of its triangles there.
+/// Default fade, relative to the longest side of the mesh's bounding box. Larger: the mask extends
+/// beyond the painted region. Smaller: the shear of passing material needs most of the triangles
+/// that refinement adds.
 const DEFAULT_FADE: f64 = 0.1;
 
-/// The least fade where none is given, in mean edges of the mesh. Smaller is steeper than the triangles can follow.
+/// Smallest default fade, in mean edge lengths of the mesh. Larger: the mask extends beyond the
+/// painted region. Smaller: the mask is steeper than the triangles can follow.
 const LEAST_DEFAULT_FADE: f64 = 4.0;
 
-/// Radius of the kernel as a share of the fade: what is held ends half a radius beyond a held vertex, and what is free begins
-/// two radii farther.
+/// Radius of the kernel, relative to the fade. The held region ends half a radius beyond a held
+/// vertex, and the free region begins two radii farther. Larger: the mask fades over more than the
+/// given length. Smaller: it is steeper than asked for.
 const KERNEL: f64 = 0.5;
 
-/// Distance of neighboring samples as a share of the kernel's radius. Larger leaves holes in the mask of large triangles;
-/// smaller costs samples.
+/// Distance of neighboring samples, relative to the radius of the kernel. Larger: the mask of large
+/// triangles has holes. Smaller: more samples.
 const SPACING: f64 = 0.75;
 
-/// Side of the cells of space of which one sample each is kept, as a share of the kernel's radius. Larger makes the average
-/// uneven; smaller makes it slow.
+/// Side of the cells of space in each of which one sample is kept, relative to the radius of the
+/// kernel. Larger: the average is uneven. Smaller: evaluation is slow.
 const CELL: f64 = 0.2;
 
-/// How far a weight grows, as a share of the kernel's radius. It takes one radius plus the distance from a held point to a
-/// held sample, so that all samples that a held point sees are held.
+/// Distance by which painted weights grow, relative to the radius of the kernel: one radius plus
+/// the distance from a held point to a held sample. Every sample within the radius of a held point
+/// is then held.
 const GROWTH: f64 = 1.0 + SPACING;
 
-/// The coverage counts as full at this share of the least that painted samples have. Larger could leave midpoints of held
-/// triangles not fully held; smaller lets the mask end more abruptly off the surface.
+/// Coverage that counts as full, relative to the least coverage of a painted sample. Larger:
+/// midpoints of held triangles may not be fully held. Smaller: the mask ends more abruptly off the
+/// surface.
 const FULL_COVERAGE: f64 = 0.5;
 
-/// Samples at most: each takes about a hundred bytes.
+/// Largest number of samples; each takes about a hundred bytes.
 const MAX_SAMPLES: usize = 8_000_000;
 
-/// Samples at which the speed of a masked field is looked up, at most.
+/// Largest number of samples at which the speed of a masked field is sampled.
 const PROBES: usize = 128;
 
-/// Weights of the vertices of a mesh, 0 free to 1 held, as a smooth scalar of the space around the mesh.
+/// Weights of the vertices of a mesh, from 0 (free) to 1 (held), as a smooth function of the space
+/// around the mesh.
+///
+/// # Examples
+/// ```
+/// use glam::DVec3;
+/// use isochore_field::{Mask, VertexMask};
+/// use isochore_mesh::primitives;
+///
+/// let sphere = primitives::icosphere(1.0, 3);
+/// let weights: Vec<f64> =
+///     sphere.positions.iter().map(|position| f64::from(position.z > 0.6)).collect();
+/// let cap = VertexMask::new(&sphere, &weights, None)?;
+///
+/// let mask = Mask::new(Vec::new(), Some(cap), Vec::new())?;
+/// assert!(mask.is_held(DVec3::Z));
+/// assert!(!mask.is_held(-DVec3::Z));
+/// # Ok::<(), isochore_field::MaskError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct VertexMask {
     samples: Arc<[Sample]>,
     tree: Arc<RTree<GeomWithData<[f64; 3], u32>>>,
-    /// h, the radius of the kernel.
+    /// Radius h of the kernel.
     radius: f64,
-    /// S from which on the coverage is full.
+    /// Value of S from which the coverage is full.
     full: f64,
-    /// Box outside which nothing is held.
+    /// Box outside which everything is free.
     bounds: Aabb,
 }
 
@@ -75,19 +99,25 @@ pub struct VertexMask {
 struct Sample {
     position: DVec3,
     weight: f64,
-    /// q, the reciprocal of how densely the samples lie here.
-    share: f64,
+    /// Factor q, the reciprocal of the local density of the samples.
+    normalization: f64,
 }
 
 impl VertexMask {
-    /// The mask of `mesh` by one of the `weights` for each vertex.
+    /// The mask of `mesh` with one of the `weights` for each vertex.
     ///
-    /// From a held vertex to what is free it takes a little more than the length `fade`; by default a tenth of the
-    /// longest side of the mesh's bounding box, or four mean edges where that is more.
+    /// The distance from a held vertex to free material is slightly more than the length `fade`,
+    /// model units. Its default is a tenth of the longest side of the mesh's bounding box, or four
+    /// mean edge lengths if that is more.
     ///
     /// # Errors
-    /// [`MaskError`]: weights that do not fit the mesh or are not from 0 to 1, a fade that is no length, none given for a mesh
-    /// without edges, one that takes too many samples, a mesh that is not valid.
+    /// - [`MaskError::Mesh`] if the mesh has an index out of range or a coordinate that is not
+    ///   finite.
+    /// - [`MaskError::WeightCount`] if there is not one weight for each vertex.
+    /// - [`MaskError::Weight`] if a weight is not from 0 to 1.
+    /// - [`MaskError::NoEdges`] if `fade` is `None` and the mesh has no edges.
+    /// - [`MaskError::Fade`] if the fade is not a positive length.
+    /// - [`MaskError::TooManySamples`] if the fade is too short for the size of the mesh.
     pub fn new(mesh: &TriMesh, weights: &[f64], fade: Option<f64>) -> Result<Self, MaskError> {
         mesh.check_valid().map_err(|_| MaskError::Mesh)?;
         if weights.len() != mesh.positions.len() {
@@ -120,12 +150,12 @@ impl VertexMask {
         Ok(mask)
     }
 
-    /// The length over which the mask changes.
+    /// Length over which the mask varies.
     pub(super) fn feature_size(&self) -> f64 {
         self.radius
     }
 
-    /// The factor of the mask at a point.
+    /// Factor of the mask at a point.
     pub(super) fn factor(&self, point: DVec3) -> Factor {
         if self.bounds.distance(point) > 0.0 {
             return Factor::ONE;
@@ -152,7 +182,7 @@ impl VertexMask {
                 .any(|found| self.samples[found.data as usize].weight > 0.0)
     }
 
-    /// Samples where the mask changes.
+    /// Samples where the mask varies.
     pub(super) fn probes(&self) -> Vec<DVec3> {
         let is_changing = |sample: &&Sample| {
             let factor = self.factor(sample.position);
@@ -163,7 +193,8 @@ impl VertexMask {
         changing.into_iter().step_by(stride).collect()
     }
 
-    /// The samples with the largest weight painted in reach, and evened out by how densely they lie.
+    /// The samples with the largest painted weight within the growth distance, and normalized by
+    /// their local density.
     fn grown(&self, painted: &[Sample]) -> Vec<Sample> {
         let mut grown = self.samples.to_vec();
         let reach = GROWTH * self.radius;
@@ -174,26 +205,27 @@ impl VertexMask {
             }
         }
         for sample in &mut grown {
-            // Every share is one so far, so the coverage is the density; the sample itself adds one to it.
-            sample.share = 1.0 / self.sums(sample.position).coverage.max(1.0);
+            // All normalizations are still one, so the coverage is the density. The sample itself
+            // contributes one.
+            sample.normalization = 1.0 / self.sums(sample.position).coverage.max(1.0);
         }
         grown
     }
 
-    /// The sums over all samples in reach of a point.
+    /// Sums over all samples within the radius of a point.
     fn sums(&self, point: DVec3) -> Sums {
         let square = self.radius * self.radius;
         let mut near: Vec<u32> =
             self.tree.locate_within_distance(point.to_array(), square).map(|found| found.data).collect();
-        // The order of a sum decides its last bits, and that of the tree is its own business.
+        // The order of a sum decides its last bits, and the order of the results is unspecified.
         near.sort_unstable();
         let mut sums = Sums::default();
         for index in near {
-            let Sample { position, weight, share, .. } = self.samples[index as usize];
+            let Sample { position, weight, normalization, .. } = self.samples[index as usize];
             let arm = point - position;
             let rest = (1.0 - arm.length_squared() / square).max(0.0);
-            let kernel = share * rest * rest * rest;
-            let gradient = -6.0 * share * rest * rest / square * arm;
+            let kernel = normalization * rest * rest * rest;
+            let gradient = -6.0 * normalization * rest * rest / square * arm;
             sums.coverage += kernel;
             sums.coverage_gradient += gradient;
             sums.free += (1.0 - weight) * kernel;
@@ -203,7 +235,7 @@ impl VertexMask {
     }
 }
 
-/// S and F at a point, and their gradients.
+/// S and F at a point, with their gradients.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     coverage: f64,
@@ -212,9 +244,10 @@ struct Sums {
     free_gradient: DVec3,
 }
 
-/// The vertices, and between them points of the triangles in reach of any that is held; none where there would be too many.
+/// The vertices, and additional points on the triangles near held vertices. Returns `None` if there
+/// would be more than [`MAX_SAMPLES`].
 fn sample(mesh: &TriMesh, weights: &[f64], radius: f64) -> Option<Vec<Sample>> {
-    let sample = |position, weight| Sample { position, weight, share: 1.0 };
+    let sample = |position, weight| Sample { position, weight, normalization: 1.0 };
     let mut samples: Vec<Sample> =
         mesh.positions.iter().zip(weights).map(|(&position, &weight)| sample(position, weight)).collect();
     let held = Aabb::of(mesh.triangles.iter().flat_map(|corners| {
@@ -242,7 +275,7 @@ fn sample(mesh: &TriMesh, weights: &[f64], radius: f64) -> Option<Vec<Sample>> {
                     continue;
                 }
                 let [u, v, w] = [i, j, k].map(|part| part as f64 / cells as f64);
-                // Rounding of the average must not let go of a triangle that is held whole.
+                // Rounding of the average must not release a triangle that is held as a whole.
                 let weight = if wa == wb && wb == wc { wa } else { (u * wa + v * wb + w * wc).min(1.0) };
                 samples.push(sample(u * a + v * b + w * c, weight));
             }

@@ -23,7 +23,7 @@ fn the_core_moves_at_unit_speed_everywhere() {
         let (across, height) = libm::sincos(0.61 * f64::from(i));
         let radius = 1.0 + 0.24 * across;
         let point = DVec3::new(radius * cos, radius * sin, 0.24 * height);
-        // A handful of roundings.
+        // Within a few roundings.
         assert!(field.velocity(point).distance(DVec3::Z) < 4e-15, "{point}");
     }
 }
@@ -37,19 +37,20 @@ fn the_field_is_the_curl_of_its_potential() {
     }
     let seen =
         deviation(&*at(RingShape { profile: Profile::Contact, ..TILTED }, 0.3), &scattered_points(400, 1.5), 1e-4);
-    // Its second derivative jumps where it ends inside the tube: differences across that are of first order in h.
+    // The second derivative of the profile jumps inside the tube. Differences across the jump are
+    // of first order in h.
     assert!(seen.curl < 1e-3 && seen.divergence < 1e-2, "{seen:?}");
 }
 
 #[test]
-fn nothing_flows_out_of_spheres() {
+fn the_net_flux_is_zero() {
     for field in [at(GOLDEN, 0.0), at(TILTED, 0.5)] {
         assert!(worst_field_flux(&*field, |_| f64::INFINITY, 1.0) < QUADRATURE_NOISE);
     }
 }
 
 #[test]
-fn bounds_and_clearance_hold_the_support() {
+fn bounds_and_clearance_contain_the_support() {
     let field = at(TILTED, 0.4);
     let mut outside = 0;
     for point in scattered_points(2000, 2.5) {
@@ -59,7 +60,7 @@ fn bounds_and_clearance_hold_the_support() {
         assert!(clearance > 0.0 || field.bounds().distance(point) == 0.0);
         if clearance > 0.0 {
             outside += 1;
-            // The nearest point of the support is as far as stated, and just short of it there is no field.
+            // Every point nearer than the clearance has zero velocity.
             for direction in [DVec3::X, DVec3::Y, DVec3::Z, TILTED.axis.normalize()] {
                 assert_eq!(field.velocity(point + 0.999 * clearance * direction), DVec3::ZERO);
             }
@@ -69,7 +70,7 @@ fn bounds_and_clearance_hold_the_support() {
 }
 
 #[test]
-fn rings_that_cannot_be_are_refused() {
+fn rejects_invalid_rings() {
     let error = |shape: RingShape| Ring::new(shape, 1.0).unwrap_err();
     assert_eq!(
         error(RingShape { support: 0.75, ..GOLDEN }),

@@ -1,24 +1,28 @@
+//! Errors of strips.
+
 use isochore_curve::SplineError;
 
 use crate::fields::Profile;
 
-/// Why there is no such strip.
+/// Errors when constructing a [`Strip`](crate::Strip), its shape or its spine.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum StripError {
-    /// The points of the spine have no curve.
+    /// No spline passes through the points of the spine.
     #[error("{list}: {source}")]
     Spine {
-        /// Which list of points.
+        /// Name of the list of points.
         list: &'static str,
-        /// Why not.
+        /// Error of the spline.
         source: SplineError,
     },
-    /// The spine ends with another number of points than it begins with.
-    #[error("the spine begins with {start} points and ends with {end}; points move one by one, so give as many")]
+    /// The spine has different numbers of points at the start and at the end.
+    #[error(
+        "the spine has {start} points at the start and {end} at the end; give equally many, as each point moves to its counterpart"
+    )]
     PointCounts {
-        /// Points at the beginning.
+        /// Number of points at the start.
         start: usize,
-        /// Points at the end.
+        /// Number of points at the end.
         end: usize,
     },
     /// The support is not a positive, finite length.
@@ -27,66 +31,67 @@ pub enum StripError {
     /// A radius is not a positive, finite length.
     #[error("radius {index} must be a positive length, not {value}")]
     Radius {
-        /// Its place in the list, from 0.
+        /// Index in the list, from 0.
         index: usize,
-        /// The radius.
+        /// Radius given.
         value: f64,
     },
-    /// There is no radius.
-    #[error("the strip needs a radius")]
+    /// The list of radii is empty.
+    #[error("the list of radii is empty; give at least one radius")]
     NoRadius,
-    /// The smooth law through the radii swings below zero.
-    #[error("between radii {index} and {} the smooth law through them falls to zero; give more radii there", .index + 1)]
+    /// The smooth curve through the radii falls to zero or below.
+    #[error("between radii {index} and {} the smooth curve through the radii falls to zero; give more radii between them", .index + 1)]
     RadiusSwings {
-        /// The first of the two, from 0.
+        /// Index of the first of the two radii, from 0.
         index: usize,
     },
-    /// A section is not made of at least three finite points.
-    #[error("a section needs at least 3 points, all finite")]
+    /// A cross-section has fewer than three points, or a point that is not finite.
+    #[error("a cross-section needs at least 3 points, all finite")]
     SectionPoints,
-    /// A section has no inside.
-    #[error("the section encloses no area")]
+    /// A cross-section has no interior.
+    #[error("the cross-section encloses no area")]
     SectionEmpty,
-    /// A section is too large for its thinnest part and the support.
+    /// A cross-section is too large compared with its thinnest part and the support.
     #[error(
-        "the section would take {cells:.0} samples, more than {most}; give a wider support, or a less flat section"
+        "the cross-section would take {cells:.0} samples, more than {most}; give a larger support or a less flat cross-section"
     )]
     SectionCells {
-        /// Samples needed.
+        /// Required number of samples.
         cells: f64,
-        /// Samples allowed.
+        /// Largest allowed number of samples.
         most: usize,
     },
-    /// The direction of a section's x axis is along the spine, or none.
-    #[error("the section's reference direction must not be zero or along the spine where it begins")]
+    /// The direction of a cross-section's x axis is zero or along the spine.
+    #[error("the reference direction of the cross-section must be nonzero and not along the start of the spine")]
     Reference,
-    /// A closed spine has no place where a section or a list of radii could begin.
-    #[error("sections and lists of radii need an open spine")]
+    /// A cross-section or a list of radii needs an open spine, as it begins at the start of the
+    /// spine.
+    #[error("cross-sections and lists of radii need an open spine; open it, or give one radius")]
     Closed,
-    /// The profile has a kink on the surface, across which a strip would be torn.
-    #[error("the profile `{0}` is for tools that move rigidly; choose another")]
+    /// The profile has a kink on the surface, which would tear the material at the strip.
+    #[error("the profile `{0}` has a kink on the surface, which a strip cannot have; choose another")]
     Profile(Profile),
-    /// The field would reach points that have no nearest point on the spine.
+    /// The field would reach points without a unique nearest point on the spine.
     #[error(
-        "the field reaches {extent:.6} from the spine, but the spine {}allows only {:.6}: it bends with a radius of \
-         {curvature_radius:.6}, and its parts come within {:.6} of each other; take a thinner strip, a smaller support or a \
-         gentler spine",
-        when(*.time), REACH_SHARE * .curvature_radius.min(*.bottleneck_radius), 2.0 * .bottleneck_radius
+        "the field reaches {extent:.6} from the spine, but the spine {}allows only {:.6}: its smallest radius of \
+         curvature is {curvature_radius:.6}, and its parts come within {:.6} of each other; use a thinner strip, a smaller \
+         support or a straighter spine",
+        when(*.time), REACH_FRACTION * .curvature_radius.min(*.bottleneck_radius), 2.0 * .bottleneck_radius
     )]
     Reach {
-        /// Radius and support together: how far from the spine the field reaches.
+        /// Distance from the spine that the field reaches: radius plus support.
         extent: f64,
         /// Smallest radius of curvature of the spine.
         curvature_radius: f64,
-        /// Half the distance at which two parts of the spine face each other.
+        /// Half the smallest distance between two facing parts of the spine.
         bottleneck_radius: f64,
-        /// When, from 0 to 1.
+        /// Time of the failure, from 0 to 1.
         time: f64,
     },
     /// The spine is too short for its ends to fade.
     #[error(
-        "the spine {}is {length:.6} long, but each of its ends fades over {taper:.6}, the radius and the support together; make \
-         it longer",
+        "the spine {}is {length:.6} long, but each of its ends fades over {taper:.6}, the radius plus the support; make it \
+         longer",
         when(*.time)
     )]
     TooShort {
@@ -94,19 +99,20 @@ pub enum StripError {
         length: f64,
         /// Length over which an end fades.
         taper: f64,
-        /// When, from 0 to 1.
+        /// Time of the failure, from 0 to 1.
         time: f64,
     },
-    /// A number is infinite or not a number.
+    /// A number is infinite or NaN.
     #[error("{0} must be finite")]
     NotFinite(&'static str),
 }
 
-/// How much of the spine's reach a field may use. Larger: just short of the reach the strip across is stretched without bound,
-/// and the reach itself is an estimate from above. Smaller refuses what works.
-pub(super) const REACH_SHARE: f64 = 0.95;
+/// Largest fraction of the spine's reach that a field may use. Larger: close to the reach, a strip
+/// across is stretched without bound, and the reach is itself estimated from above. Smaller:
+/// rejects valid strips.
+pub(super) const REACH_FRACTION: f64 = 0.95;
 
-/// Words for a time, none at the beginning.
+/// A time as words for a message; empty at the start.
 fn when(time: f64) -> String {
     if time > 0.0 { format!("at {:.0} % of the time ", 100.0 * time) } else { String::new() }
 }

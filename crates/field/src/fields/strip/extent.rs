@@ -1,15 +1,15 @@
-//! How far from a spine the solid of a tool reaches.
+//! Distance that the solid of a tool extends from a spine, by branch and bound over an octree.
 
 use isochore_mesh::Aabb;
 
 use super::spine_instant::SpineInstant;
 use crate::fields::Tool;
 
-/// Cells are halved until their half diagonal is this share of the whole box's: what the result may be too large by. Smaller
-/// takes longer; larger refuses strips that just fit.
+/// Half diagonal at which cells are no longer divided, relative to that of the whole box. The
+/// result may be too large by about this. Larger: rejects strips that just fit. Smaller: slower.
 const RESOLUTION: f64 = 1.0 / 64.0;
 
-/// Upper bound on the distance from the spine of all points nearer to the tool than `threshold`, by branch and bound.
+/// Upper bound on the distance from the spine of all points closer to the tool than `threshold`.
 pub(super) fn farthest(tool: &Tool, threshold: f64, spine: &SpineInstant) -> f64 {
     let distance = tool.distance();
     let whole = distance.bounds().expanded(threshold);
@@ -23,7 +23,7 @@ pub(super) fn farthest(tool: &Tool, threshold: f64, spine: &SpineInstant) -> f64
             continue;
         }
         let (value, _) = distance.sample(center);
-        // Where samples end, at the reach of a grid, the cell may still have a part inside.
+        // Where the samples of a grid end, part of the cell may still be inside.
         if value.is_finite() && value - distance.lipschitz() * radius >= threshold {
             continue;
         }
@@ -60,7 +60,7 @@ mod tests {
     use crate::fields::{Profile, strip::spine_curve::SpineCurve};
 
     #[test]
-    fn a_box_reaches_as_far_as_its_edges() {
+    fn a_box_extends_to_its_edges() {
         let shape = RoundedBox::new(DVec3::new(0.2, 0.3, 1.0), 0.0).unwrap();
         let tool = Tool::new(Arc::new(shape), 0.25, Profile::Quintic).unwrap();
         let line = Bezier::new(vec![DVec3::Z * -2.0, DVec3::Z * 2.0]);

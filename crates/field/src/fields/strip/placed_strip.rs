@@ -1,4 +1,7 @@
 //! The field of a strip at one instant.
+//!
+//! The parent module states the formulas. Along, the weight is g² and the potential ½ T×r. Across,
+//! the weight is S′ g and the potential −(U·r) ∇s.
 
 use std::sync::Arc;
 
@@ -12,16 +15,16 @@ use super::{
 };
 use crate::fields::{Field, FieldBlock, NO_CORE, Profile, Tool, WeightedPotential};
 
-/// A strip where it is at one instant, and how it moves.
+/// A strip at one instant, with its motion.
 #[derive(Debug, Clone)]
 pub(super) struct PlacedStrip {
     pub(super) shape: Arc<StripShape>,
     pub(super) spine: Arc<SpineInstant>,
     pub(super) path: Arc<StripSpine>,
     pub(super) motion: StripMotion,
-    /// How far spine and tool have traveled since time 0.
+    /// Displacement of spine and tool since time 0.
     pub(super) shift: DVec3,
-    /// The field reaches no farther from the spine.
+    /// Distance from the spine that the field reaches.
     pub(super) extent: f64,
     pub(super) bounds: Aabb,
 }
@@ -29,12 +32,14 @@ pub(super) struct PlacedStrip {
 /// The field at one point.
 #[derive(Debug, Clone, Copy)]
 enum Sample {
-    /// Beyond the support by at least this.
+    /// Beyond the support by at least this distance.
     Outside(f64),
+    /// Within the support.
     Inside(WeightedPotential),
 }
 
-/// A distance that is below the support, and its gradient; or how far at least the support is.
+/// A distance below the support with its gradient, or a lower bound on the distance from the
+/// support.
 type Near = Result<(f64, DVec3), f64>;
 
 impl Field for PlacedStrip {
@@ -51,7 +56,7 @@ impl Field for PlacedStrip {
         }
         let mut sample = Sample::Outside(0.0);
         for lane in 0..LANES {
-            // Lanes that fill a block repeat the one before.
+            // Unused lanes of a block repeat the point before.
             if lane == 0 || points.get(lane) != points.get(lane - 1) {
                 let beyond = self.bounds.distance(points.get(lane));
                 sample = if beyond > 0.0 {
@@ -73,7 +78,8 @@ impl Field for PlacedStrip {
 }
 
 impl PlacedStrip {
-    /// The field at a point relative to the traveled strip; the distance from a tool comes along.
+    /// The field at a point in the coordinates of the displaced strip, with the distance from a
+    /// tool, if the strip has one.
     fn sample(&self, point: DVec3, tool_distance: f64, tool_gradient: DVec3) -> Sample {
         if let CrossSection::Tool(tool) = &self.shape.cross_section
             && let Err(clearance) = near_tool(tool, tool_distance, tool_gradient)
@@ -103,7 +109,7 @@ impl PlacedStrip {
         }
     }
 
-    /// S′ g as the share and −(U·r) ∇s as the potential, whose curl is ∇s × U.
+    /// Weight S′ g and potential −(U·r) ∇s, whose curl is ∇s × U.
     fn across(&self, station: &Station, travel: DVec3, value: f64, gradient: DVec3) -> Sample {
         let (taper, taper_slope) = self.taper(station);
         if station.beyond > 0.0 || taper == 0.0 {
@@ -120,7 +126,7 @@ impl PlacedStrip {
         })
     }
 
-    /// The share of the motion that the ends leave, and its derivative by the parameter.
+    /// Weight S′ that fades at the ends of the spine, and its derivative by the parameter.
     fn taper(&self, station: &Station) -> (f64, f64) {
         let total = self.spine.length();
         let (length, speed) = self.spine.length_to(station);
@@ -132,6 +138,7 @@ impl PlacedStrip {
         (start * end, (start_slope * end - start * end_slope) * speed / self.extent)
     }
 
+    /// Distance from a round strip or a polygonal cross-section, and its gradient.
     fn near_spine(&self, station: &Station) -> Near {
         let clearance = station.offset.length() - self.extent;
         if clearance > 0.0 {
@@ -140,7 +147,7 @@ impl PlacedStrip {
         match &self.shape.cross_section {
             CrossSection::Round(law) => {
                 let length = station.offset.length();
-                // On the spine itself the distance has no gradient, and is given none.
+                // On the spine the distance has no gradient; zero is used.
                 let radial = if length > 0.0 { station.offset / length } else { DVec3::ZERO };
                 if law.is_constant() {
                     return Ok((length - law.largest(), radial));
@@ -159,14 +166,15 @@ impl PlacedStrip {
                 // ∇(N·r) = N + (N′·r) ∇u, since N is normal to the spine.
                 let axis_gradient =
                     |vector: DVec3, derivative: DVec3| vector + derivative.dot(offset) * station.parameter_gradient;
-                let place = DVec2::new(normal.vector.dot(offset), side.dot(offset));
-                let (flat, slopes) = section.sample(place).ok_or(0.0)?;
+                let plane_point = DVec2::new(normal.vector.dot(offset), side.dot(offset));
+                let (flat, slopes) = section.sample(plane_point).ok_or(0.0)?;
                 let flat_gradient = slopes.x * axis_gradient(normal.vector, normal.derivative)
                     + slopes.y * axis_gradient(side, side_derivative);
                 if station.beyond == 0.0 {
                     return Ok((flat, flat_gradient));
                 }
-                // Round caps: seen from the depths of the section, its distance and the one beyond the end are two legs.
+                // Round caps: beyond the end, the distance from the deepest line of the section is
+                // the hypotenuse of the distance in the plane and the distance along the tangent.
                 let beyond = offset.dot(station.tangent);
                 let leg = flat + section.depth();
                 let length = (leg * leg + beyond * beyond).sqrt();
@@ -177,16 +185,17 @@ impl PlacedStrip {
     }
 }
 
+/// Distance from a tool and its gradient, if below its support.
 fn near_tool(tool: &Tool, distance: f64, gradient: DVec3) -> Near {
     if distance < tool.support() {
         return Ok((distance, gradient));
     }
     let beyond = (distance - tool.support()) / tool.distance().lipschitz();
-    // Beyond the samples of a grid the distance is infinite, and nothing is known but that.
+    // Beyond the samples of a grid the distance is infinite and gives no bound.
     Err(if beyond.is_finite() { beyond } else { 0.0 })
 }
 
-/// From zero at 0 to one at 1, twice continuously differentiable, and the derivative.
+/// Step from zero at 0 to one at 1, twice continuously differentiable, and its derivative.
 fn smoothstep(t: f64) -> (f64, f64) {
     let (value, slope) = Profile::Quintic.evaluate(1.0 - t);
     (value, -slope)

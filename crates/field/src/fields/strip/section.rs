@@ -1,42 +1,45 @@
-//! The section of a strip: a polygon's signed distance, smoothed by a spline.
+//! The cross-section of a strip: signed distance from a polygon, smoothed by a spline.
+//!
+//! Source: M. Unser, *Splines: a perfect fit for signal and image processing*, 1999 (the recursive
+//! prefilter).
 
 use glam::DVec2;
 
 use super::StripError;
 
-/// Samples across the support, and across the section's bounds where these are narrower. Fewer, and the polygon's corners are
-/// rounded off visibly; more takes memory for nothing.
+/// Number of samples across the support, or across the narrower side of the bounds if that is
+/// smaller. Larger: more memory without benefit. Smaller: the corners of the polygon are visibly
+/// rounded.
 const SAMPLES: f64 = 8.0;
 
-/// Most samples of a section: 8 MiB, so that it stays in cache and is made in a moment.
+/// Largest number of samples: 8 MiB, which fit in cache and are computed quickly.
 const MOST_SAMPLES: usize = 1 << 20;
 
-/// Cells beyond the support, where the spline ends and its boundary condition shows.
+/// Cells beyond the support. At the end of the spline its boundary condition shows.
 const MARGIN: f64 = 3.0;
 
 /// Pole of the filter that turns samples into coefficients of a cubic B-spline, √3 − 2.
 const POLE: f64 = -0.267_949_192_431_122_7;
 
-/// Terms of the filter's start: the pole's power is below rounding after them.
+/// Terms of the initial value of the filter. Powers of the pole beyond are below rounding.
 const START_TERMS: usize = 28;
 
-/// The signed distance of a closed polygon around the origin of a spine's normal plane, sampled on a grid and interpolated by a
-/// bicubic B-spline: twice continuously differentiable everywhere, with the gradient of the very interpolant.
-///
-/// Source: M. Unser, *Splines: a perfect fit for signal and image processing*, 1999 (the recursive prefilter).
+/// Signed distance of a closed polygon in a spine's normal plane, around the origin. It is sampled
+/// on a grid and interpolated by a bicubic B-spline: twice continuously differentiable everywhere,
+/// with the exact gradient of the interpolant.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Section {
     origin: DVec2,
     cell: f64,
     counts: [usize; 2],
-    /// Row by row, the first coordinate fastest.
+    /// Row by row; the first coordinate varies fastest.
     coefficients: Vec<f64>,
     depth: f64,
     radius: f64,
 }
 
 impl Section {
-    /// Samples the distance of `polygon`, either way round, as far as `support` beyond it.
+    /// Samples the distance of `polygon`, in either orientation, up to `support` beyond it.
     pub(super) fn new(polygon: &[DVec2], support: f64) -> Result<Self, StripError> {
         if polygon.len() < 3 || !polygon.iter().all(|point| point.is_finite()) {
             return Err(StripError::SectionPoints);
@@ -56,9 +59,9 @@ impl Section {
             return Err(StripError::SectionCells { cells: cells.x * cells.y, most: MOST_SAMPLES });
         }
         let counts = [cells.x as usize, cells.y as usize];
-        let place = |index: usize| origin + cell * DVec2::new((index % counts[0]) as f64, (index / counts[0]) as f64);
+        let node = |index: usize| origin + cell * DVec2::new((index % counts[0]) as f64, (index / counts[0]) as f64);
         let mut coefficients: Vec<f64> =
-            (0..counts[0] * counts[1]).map(|index| signed_distance(polygon, place(index))).collect();
+            (0..counts[0] * counts[1]).map(|index| signed_distance(polygon, node(index))).collect();
         if coefficients.iter().all(|distance| *distance >= 0.0) {
             return Err(StripError::SectionEmpty);
         }
@@ -68,40 +71,41 @@ impl Section {
         for column in 0..counts[0] {
             prefilter(&mut coefficients, column, counts[0], counts[1]);
         }
-        // The interpolant stays between its coefficients.
+        // The interpolant is a convex combination of its coefficients.
         let depth = -coefficients.iter().copied().fold(f64::INFINITY, f64::min);
-        // And within a cell of the distance itself, whose slope is one.
+        // The interpolant is within a cell of the distance, whose slope is one.
         let radius = polygon.iter().map(|point| point.length()).fold(0.0, f64::max) + cell;
         Ok(Self { origin, cell, counts, coefficients, depth, radius })
     }
 
-    /// Upper bound on how deep a point can be inside.
+    /// Upper bound on the depth of a point inside.
     pub(super) fn depth(&self) -> f64 {
         self.depth
     }
 
-    /// No point inside is farther from the origin.
+    /// Upper bound on the distance of a point inside from the origin.
     pub(super) fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Least half width that the field must resolve.
+    /// Smallest half width that the field must resolve.
     pub(super) fn feature_size(&self) -> f64 {
         self.depth
     }
 
-    /// Distance and gradient at a point of the normal plane; none beyond the samples, which is beyond the support.
+    /// Distance and gradient at a point of the normal plane, or `None` beyond the samples, which
+    /// extend beyond the support.
     pub(super) fn sample(&self, point: DVec2) -> Option<(f64, DVec2)> {
-        let place = (point - self.origin) / self.cell;
+        let grid_point = (point - self.origin) / self.cell;
         let last = DVec2::new((self.counts[0] - 2) as f64, (self.counts[1] - 2) as f64);
-        // The four coefficients around a place on each axis; false for NaN.
-        if !(place.cmpge(DVec2::ONE).all() && place.cmplt(last).all()) {
+        // Four coefficients per axis are needed. The comparisons are false for NaN.
+        if !(grid_point.cmpge(DVec2::ONE).all() && grid_point.cmplt(last).all()) {
             return None;
         }
-        let corner = place.floor();
+        let corner = grid_point.floor();
         let [column, row] = [corner.x as usize - 1, corner.y as usize - 1];
-        let (across, across_slopes) = weights(place.x - corner.x);
-        let (up, up_slopes) = weights(place.y - corner.y);
+        let (across, across_slopes) = weights(grid_point.x - corner.x);
+        let (up, up_slopes) = weights(grid_point.y - corner.y);
         let (mut value, mut gradient) = (0.0, DVec2::ZERO);
         for j in 0..4 {
             let start = (row + j) * self.counts[0] + column;
@@ -132,7 +136,8 @@ fn weights(t: f64) -> ([f64; 4], [f64; 4]) {
     (values, slopes)
 }
 
-/// Turns samples along a line into coefficients, as if the samples were mirrored at both ends.
+/// Turns samples along a line into coefficients, in place. The samples are mirrored at both ends; a
+/// causal and an anticausal recursive filter are applied.
 fn prefilter(values: &mut [f64], start: usize, stride: usize, count: usize) {
     let at = |index: usize| start + index * stride;
     let mut power = 1.0;
@@ -155,7 +160,7 @@ fn prefilter(values: &mut [f64], start: usize, stride: usize, count: usize) {
     }
 }
 
-/// Exact distance from a closed polygon, negative where it winds about the point.
+/// Exact distance from a closed polygon, negative where the winding number is nonzero.
 fn signed_distance(polygon: &[DVec2], point: DVec2) -> f64 {
     let mut squared = f64::INFINITY;
     let mut winding = 0;
@@ -163,8 +168,8 @@ fn signed_distance(polygon: &[DVec2], point: DVec2) -> f64 {
         let end = polygon[(index + 1) % polygon.len()];
         let (edge, offset) = (end - start, point - start);
         let length_squared = edge.length_squared();
-        let share = if length_squared > 0.0 { (offset.dot(edge) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
-        squared = squared.min((offset - edge * share).length_squared());
+        let fraction = if length_squared > 0.0 { (offset.dot(edge) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+        squared = squared.min((offset - edge * fraction).length_squared());
         let side = edge.perp_dot(offset);
         if start.y <= point.y && end.y > point.y && side > 0.0 {
             winding += 1;
@@ -179,7 +184,7 @@ fn signed_distance(polygon: &[DVec2], point: DVec2) -> f64 {
 mod tests {
     use super::*;
 
-    /// An arrow with a hollow.
+    /// An arrow with a notch.
     fn arrow() -> Vec<DVec2> {
         [[0.0, 0.4], [-0.3, -0.3], [0.0, -0.1], [0.3, -0.3]].map(DVec2::from_array).to_vec()
     }
@@ -195,11 +200,12 @@ mod tests {
         for point in scattered() {
             let (value, gradient) = section.sample(point).unwrap();
             let exact = signed_distance(&polygon, point);
-            // At kinks a spline is off by a third of a cell at most, where the slope turns from −1 to 1.
+            // At a kink, where the slope changes from −1 to 1, the spline deviates by at most a
+            // third of a cell.
             assert!((value - exact).abs() < 0.34 * section.cell, "{point}: {value} {exact}");
             assert!(gradient.length() < 1.35);
         }
-        // Far from kinks, above the tip's sides, it is the distance.
+        // Far from kinks, above the sides of the tip, it equals the distance.
         let (value, gradient) = section.sample(DVec2::new(0.35, 0.15)).unwrap();
         assert!((value - signed_distance(&polygon, DVec2::new(0.35, 0.15))).abs() < 1e-4);
         assert!((gradient.length() - 1.0).abs() < 1e-3);
@@ -213,13 +219,13 @@ mod tests {
             let at = |shift: DVec2| section.sample(point + shift).unwrap().0;
             let difference =
                 DVec2::new(at(h * DVec2::X) - at(-h * DVec2::X), at(h * DVec2::Y) - at(-h * DVec2::Y)) / (2.0 * h);
-            // Rounding of 1e-16/h, and h² over a cell squared.
+            // Rounding of 1e-16/h, plus h² over the squared cell.
             assert!(difference.distance(section.sample(point).unwrap().1) < 1e-8, "{point}");
         }
     }
 
     #[test]
-    fn what_is_not_sampled_is_beyond_the_support() {
+    fn the_samples_cover_the_support() {
         let polygon = arrow();
         let section = Section::new(&polygon, 0.2).unwrap();
         for point in scattered().map(|point| 3.0 * point) {
@@ -230,16 +236,16 @@ mod tests {
     }
 
     #[test]
-    fn both_ways_round_are_the_same() {
+    fn the_orientation_does_not_matter() {
         let backwards: Vec<DVec2> = arrow().into_iter().rev().collect();
         let point = DVec2::new(0.05, 0.1);
         let values = [arrow(), backwards].map(|polygon| Section::new(&polygon, 0.2).unwrap().sample(point).unwrap().0);
-        // The samples are the same up to rounding.
+        // The samples are equal up to rounding.
         assert!((values[0] - values[1]).abs() < 1e-14 && values[0] < 0.0);
     }
 
     #[test]
-    fn sections_without_area_are_refused() {
+    fn rejects_sections_without_area() {
         let line = [DVec2::ZERO, DVec2::ONE, DVec2::splat(2.0)];
         assert_eq!(Section::new(&line, 0.1).unwrap_err(), StripError::SectionEmpty);
         assert_eq!(Section::new(&line[..2], 0.1).unwrap_err(), StripError::SectionPoints);

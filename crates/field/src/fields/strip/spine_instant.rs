@@ -1,4 +1,7 @@
-//! A spine at one instant, ready to be asked where a point of space is along it and how that changes from point to point.
+//! A spine at one instant: the nearest point of the spine to a point of space, and its derivatives.
+//!
+//! The parameter u of the nearest point satisfies (x − c(u)) · c′(u) = 0, so its gradient in space
+//! is c′/(|c′|² − (x − c) · c″).
 
 use glam::DVec3;
 use isochore_curve::{
@@ -9,26 +12,28 @@ use isochore_mesh::Aabb;
 
 use super::spine_curve::SpineCurve;
 
-/// Frames a smooth piece of the spine. Double reflection is of fourth order: more frames change nothing that is seen; fewer and
-/// the section turns a little about the spine.
+/// Number of frames per smooth piece of the spine. Double reflection is of fourth order. Larger: no
+/// visible change. Smaller: the cross-section rotates slightly about the spine.
 const FRAMES_PER_PIECE: usize = 16;
 
-/// Where the center of curvature comes this near, as a share of its distance, the nearest point of the spine is taken to move no
-/// faster. Strips that are within reach of their spine have five hundred times as much; it keeps numbers finite for those that
-/// bend too far between two instants that were looked at.
+/// Lower bound on the denominator of the parameter's gradient, relative to |c′|²; the denominator
+/// vanishes at the center of curvature. Strips within the reach of their spine have five hundred
+/// times as much. The bound keeps values finite for spines that bend too far between two checked
+/// instants. Larger: changes valid fields. Smaller: allows larger velocities for such spines.
 const LEAST_STRETCH: f64 = 1e-4;
 
 /// A spine at one instant.
 #[derive(Debug, Clone)]
 pub(super) struct SpineInstant {
     search: ClosestPoint<SpineCurve>,
-    /// Parameter, length up to there and parametric speed, ascending.
+    /// Parameter, arc length up to it and parametric speed, in ascending order.
     lengths: Vec<[f64; 3]>,
-    /// Reference vectors of rotation-minimizing frames by the parameter, where a section needs them.
+    /// Reference vectors of rotation-minimizing frames by the parameter, if a cross-section needs
+    /// them.
     references: Option<CubicSpline>,
 }
 
-/// The reference vector at the beginning of the spine at time 0, and the tangent there.
+/// Reference vector and tangent at the start of the spine at time 0.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StartFrame {
     pub(super) reference: DVec3,
@@ -39,7 +44,7 @@ pub(super) struct StartFrame {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Station {
     pub(super) parameter: f64,
-    /// From the spine to the point.
+    /// Vector from the spine to the point.
     pub(super) offset: DVec3,
     /// Unit tangent.
     pub(super) tangent: DVec3,
@@ -47,9 +52,10 @@ pub(super) struct Station {
     pub(super) tangent_derivative: DVec3,
     /// Parametric speed.
     pub(super) speed: f64,
-    /// Gradient of the parameter in space; zero beyond an end, where it does not change.
+    /// Gradient of the parameter in space; zero beyond an end, where the parameter is constant.
     pub(super) parameter_gradient: DVec3,
-    /// How far the point is beyond the end of an open spine, along it; zero between the ends.
+    /// Distance along the tangent by which the point is beyond an end of an open spine; zero
+    /// between the ends.
     pub(super) beyond: f64,
 }
 
@@ -61,7 +67,7 @@ pub(super) struct Normal {
 }
 
 impl SpineInstant {
-    /// Prepares `curve`; its frames only where one is given to begin with.
+    /// Prepares `curve` for queries, with frames only if a start frame is given.
     pub(super) fn new(curve: SpineCurve, start_frame: Option<StartFrame>) -> Self {
         let references = start_frame.and_then(|start| references(&curve, start));
         let table = ArcLength::new(&curve);
@@ -83,7 +89,7 @@ impl SpineInstant {
         self.lengths[self.lengths.len() - 1][1]
     }
 
-    /// A box that holds the spine.
+    /// Bounding box of the spine.
     pub(super) fn bounds(&self) -> Aabb {
         let (min, max) = self.search.bounds();
         Aabb { min, max }
@@ -94,6 +100,7 @@ impl SpineInstant {
         self.search.closest(point).distance
     }
 
+    /// The nearest point of the spine to `point`.
     pub(super) fn station(&self, point: DVec3) -> Station {
         let parameter = self.search.closest(point).parameter;
         let curve = self.curve();
@@ -104,7 +111,7 @@ impl SpineInstant {
         let along = offset.dot(tangent);
         let (first, last) = curve.domain();
         let is_beyond = !curve.is_closed() && (parameter <= first && along < 0.0 || parameter >= last && along > 0.0);
-        // Of the implicit equation (x − c(u)) · c′(u) = 0.
+        // From the implicit equation (x − c(u)) · c′(u) = 0.
         let stretch = (squared_speed - jet.second.dot(offset)).max(LEAST_STRETCH * squared_speed);
         Station {
             parameter,
@@ -117,9 +124,10 @@ impl SpineInstant {
         }
     }
 
-    /// Length from the start of the spine to a station, and its derivative by the parameter.
+    /// Arc length from the start of the spine to a station, and its derivative by the parameter.
     ///
-    /// Interpolated: off by the fourth power of a sixteenth of a piece. The derivative is that of the very function.
+    /// The length is interpolated; its error is of fourth order in a sixteenth of a piece. The
+    /// derivative is that of the interpolant.
     pub(super) fn length_to(&self, station: &Station) -> (f64, f64) {
         let last = self.lengths.len() - 1;
         let index = self.lengths[1..last].partition_point(|entry| entry[0] <= station.parameter);
@@ -133,14 +141,15 @@ impl SpineInstant {
         (length, slope / width)
     }
 
-    /// The normal at a station that does not turn about the spine, as far as frames were asked for.
+    /// The rotation-minimizing normal at a station, or zero without frames.
     pub(super) fn normal(&self, station: &Station) -> Normal {
         let Some(references) = &self.references else {
             return Normal { vector: DVec3::ZERO, derivative: DVec3::ZERO };
         };
         let jet = references.jet(station.parameter);
         let Station { tangent, tangent_derivative, .. } = *station;
-        // The interpolant of unit normals is neither quite a unit nor quite normal; what it lacks is differentiated with it.
+        // The interpolant of unit normals is neither exactly unit nor exactly normal. The
+        // correction is differentiated with it.
         let along = jet.position.dot(tangent);
         let across = jet.position - along * tangent;
         let along_derivative = jet.first.dot(tangent) + jet.position.dot(tangent_derivative);
@@ -152,13 +161,13 @@ impl SpineInstant {
     }
 }
 
-/// The direction at the beginning of `curve` that a section's x axis has there, where none is given.
+/// Default direction of a cross-section's x axis at the start of `curve`: along the curvature.
 pub(super) fn default_reference(curve: &SpineCurve) -> DVec3 {
     let jet = curve.jet(curve.domain().0);
     jet.normal().unwrap_or_else(|| perpendicular(jet.tangent()))
 }
 
-/// The C² interpolant of the reference vectors of rotation-minimizing frames, by double reflection.
+/// C² interpolant of the reference vectors of rotation-minimizing frames, by double reflection.
 fn references(curve: &SpineCurve, start: StartFrame) -> Option<CubicSpline> {
     let mut parameters = Vec::new();
     for pair in curve.breaks().windows(2) {
@@ -167,9 +176,9 @@ fn references(curve: &SpineCurve, start: StartFrame) -> Option<CubicSpline> {
     }
     parameters.push(curve.domain().1);
     let tangent = curve.jet(parameters[0]).tangent();
-    // At later times the frame at the beginning turns with the tangent there, no more than it must.
+    // At later times the start frame follows the tangent by the smallest rotation.
     let first = rotate_minimally(start.tangent, tangent, start.reference).unwrap_or_else(|| perpendicular(tangent));
-    // A curve whose reach is not zero has frames.
+    // A curve with positive reach has frames.
     let spine = Spine::from_jets(parameters.iter().map(|&parameter| curve.jet(parameter)), false).ok()?;
     let frames =
         rotation_minimizing_frames(&spine, first, FrameMethod::DoubleReflection, DegenerateSegment::Rotate).ok()?;

@@ -1,4 +1,4 @@
-//! What surrounds the spine of a strip.
+//! The solid around the spine of a strip.
 
 use std::sync::Arc;
 
@@ -7,7 +7,16 @@ use glam::{DVec2, DVec3};
 use super::{StripError, radius_law::RadiusLaw, section::Section};
 use crate::fields::{Profile, Tool};
 
-/// The solid around a spine, and how the field fades beyond it.
+/// The solid around a spine, and the profile by which the field fades beyond it.
+///
+/// # Examples
+/// ```
+/// use isochore_field::{Profile, StripError, StripShape};
+///
+/// assert!(StripShape::varying(&[0.1, 0.2, 0.1], 0.3, Profile::Quintic).is_ok());
+/// let error = StripShape::round(0.2, 0.3, Profile::Thesis).unwrap_err();
+/// assert_eq!(error, StripError::Profile(Profile::Thesis));
+/// ```
 #[derive(Debug, Clone)]
 pub struct StripShape {
     pub(super) cross_section: CrossSection,
@@ -23,31 +32,37 @@ pub(super) enum CrossSection {
 }
 
 impl StripShape {
-    /// A round strip of one `radius`, with a `support` beyond it; model units.
+    /// A round strip with a constant `radius` and a `support` beyond it, model units.
     ///
     /// # Errors
-    /// [`StripError::Radius`], [`StripError::Support`], [`StripError::Profile`].
+    /// [`StripError::Radius`] or [`StripError::Support`] if a length is not positive, and
+    /// [`StripError::Profile`] for the profile with a kink.
     pub fn round(radius: f64, support: f64, profile: Profile) -> Result<Self, StripError> {
         Self::varying(&[radius], support, profile)
     }
 
-    /// A round strip whose radius varies smoothly, through `radii` at equal distances along the spine.
+    /// A round strip whose radius varies smoothly through `radii`, evenly spaced along the spine.
     ///
     /// # Errors
-    /// [`StripError::NoRadius`], [`StripError::Radius`], [`StripError::RadiusSwings`], [`StripError::Support`],
-    /// [`StripError::Profile`].
+    /// [`StripError::NoRadius`] if the list is empty, [`StripError::RadiusSwings`] if the smooth
+    /// curve through the radii falls to zero, and the errors of [`round`](Self::round).
     pub fn varying(radii: &[f64], support: f64, profile: Profile) -> Result<Self, StripError> {
         Self::new(CrossSection::Round(RadiusLaw::new(radii)?), support, profile)
     }
 
-    /// A strip whose section in the spine's normal planes is a closed `polygon`, its corners and hollows rounded by an eighth
-    /// of the support, or of the polygon's width where that is less. The plane's origin is on the spine; its x axis points along
-    /// the part of `reference` normal to the spine where that begins (along its curvature where none is given), and from there on
-    /// it turns about the spine no more than it must.
+    /// A strip with a closed `polygon` as its cross-section in the normal planes of the spine.
+    /// Convex and concave corners are rounded by an eighth of the support, or of the polygon's
+    /// width if that is smaller.
+    ///
+    /// The origin of the plane is on the spine. At the start of the spine, the x axis is along the
+    /// part of `reference` normal to the spine, by default along the curvature. From there it
+    /// follows the rotation-minimizing frame.
     ///
     /// # Errors
-    /// [`StripError::SectionPoints`], [`StripError::SectionEmpty`], [`StripError::SectionCells`], [`StripError::Support`],
-    /// [`StripError::Profile`].
+    /// [`StripError::SectionPoints`], [`StripError::SectionEmpty`] or [`StripError::SectionCells`]
+    /// if the polygon has too few or nonfinite points, encloses no area or needs too many samples.
+    /// [`StripError::Support`] if the support is not a positive length, and [`StripError::Profile`]
+    /// for the profile with a kink.
     pub fn polygon(
         polygon: &[DVec2],
         reference: Option<DVec3>,
@@ -59,11 +74,11 @@ impl StripShape {
         Self::new(CrossSection::Polygon { section, reference }, support, profile)
     }
 
-    /// The shape, support and profile of a tool, whose coordinates are those of the world: the form of the thesis, in which the
-    /// spine only says where to.
+    /// The shape, support and profile of a tool whose coordinates are world coordinates. This is
+    /// the form of the thesis, in which the spine only defines the direction of motion.
     ///
     /// # Errors
-    /// [`StripError::Profile`].
+    /// [`StripError::Profile`] for the profile with a kink.
     pub fn tool(tool: Arc<Tool>) -> Result<Self, StripError> {
         let (support, profile) = (tool.support(), tool.profile());
         Self::new(CrossSection::Tool(tool), support, profile)
@@ -77,7 +92,7 @@ impl StripShape {
         Ok(Self { cross_section, support, profile })
     }
 
-    /// Length over which the field changes.
+    /// Length over which the field varies.
     pub(super) fn feature_size(&self) -> f64 {
         match &self.cross_section {
             CrossSection::Round(law) => self.support.min(law.smallest()),

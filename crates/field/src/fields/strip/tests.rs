@@ -17,7 +17,7 @@ const ALONG: StripMotion = StripMotion::Along { distance: 1.0 };
 pub(crate) const TRAVEL: DVec3 = DVec3::new(0.3, -0.5, 0.8);
 pub(crate) const ACROSS: StripMotion = StripMotion::Across { travel: TRAVEL };
 
-/// The helix (cos, sin, 0.35 ·) of length 4, with a radius of 0.25 and a support of 0.3.
+/// The helix (cos, sin, 0.35 ·) of length 4, used with radius 0.25 and support 0.3.
 fn helix() -> TrigonometricCurve {
     TrigonometricCurve::helix(1.0, 0.35, (0.0, 4.0 / helix_speed()))
 }
@@ -42,7 +42,7 @@ pub(crate) const START: [DVec3; 5] = [
     DVec3::new(1.7, -0.1, 0.05),
 ];
 
-/// The same bent and pushed.
+/// The same points, bent and displaced.
 pub(crate) fn end() -> Vec<DVec3> {
     START.iter().map(|point| *point + DVec3::new(-0.1 * point.x, 0.2 * point.x * point.x - 0.1, 0.2)).collect()
 }
@@ -57,7 +57,7 @@ fn ellipsoid() -> StripShape {
     StripShape::tool(Arc::new(Tool::new(Arc::new(shape), 0.2, Profile::Quintic).unwrap())).unwrap()
 }
 
-/// Every kind of cross-section, along and across, on spines that stand still and spines that change their shape.
+/// Every kind of cross-section, along and across, on constant and deforming spines.
 pub(crate) fn all_strips() -> Vec<Strip> {
     let shapes = || {
         let varying = StripShape::varying(&[0.15, 0.25, 0.1], 0.25, Profile::Quintic).unwrap();
@@ -74,7 +74,7 @@ pub(crate) fn all_strips() -> Vec<Strip> {
     strips
 }
 
-/// Points near the spines above that no two of the same strip's normal planes at its knots come close to.
+/// Points near the spines above, chosen to avoid the normal planes at knots.
 fn near_points(count: u32) -> Vec<DVec3> {
     scattered_points(count, 1.0).into_iter().map(|point| point * DVec3::new(1.8, 0.7, 0.6)).collect()
 }
@@ -84,11 +84,12 @@ fn golden_velocity_along_a_helix() {
     let field = helix_strip(ALONG).at(0.0);
     let point = DVec3::new(0.173729986128, 0.681309876668, 0.240683880873);
     let expected = DVec3::new(0.795430087475, -0.284760874097, -0.295702938751);
-    // Twelve digits are given, of the point too, where the velocity changes by up to seven times as much.
+    // Point and velocity are given with twelve digits; the velocity changes by up to seven times
+    // the error of the point.
     assert!(field.velocity(point).distance(expected) < 4e-12, "{}", field.velocity(point));
 }
 
-/// Points within 0.24 of the helix with the distance along it, and the Frenet frame there.
+/// Points within 0.24 of the helix with the factor 1 − κξ and the Frenet frame.
 fn core_points() -> impl Iterator<Item = (DVec3, f64, DVec3, DVec3)> {
     let curve = helix();
     (0..60).map(move |index| {
@@ -107,13 +108,13 @@ fn core_points() -> impl Iterator<Item = (DVec3, f64, DVec3, DVec3)> {
 fn the_core_along_streams_at_unit_speed() {
     let field = helix_strip(StripMotion::Along { distance: 0.7 }).at(0.3);
     for (point, _, tangent, _) in core_points() {
-        // The nearest parameter is known to a few roundings, and the tangent turns with it.
+        // The nearest parameter has a few rounding errors, and the tangent varies with it.
         assert!(field.velocity(point).distance(0.7 * tangent) < 1e-14, "{point}");
     }
 }
 
 #[test]
-fn the_core_across_keeps_up_with_the_spine() {
+fn the_core_across_moves_with_the_spine() {
     let field = helix_strip(ACROSS).at(0.0);
     let (mut slowest, mut fastest) = (f64::INFINITY, 0.0_f64);
     for (point, stretch, tangent, _) in core_points() {
@@ -122,7 +123,7 @@ fn the_core_across_keeps_up_with_the_spine() {
         slowest = slowest.min(1.0 / stretch);
         fastest = fastest.max(1.0 / stretch);
     }
-    // A core of radius 0.24 on a curvature of 0.89.
+    // The core has radius 0.24, the spine the curvature 0.89.
     assert!(slowest < 0.85 && fastest > 1.2, "{slowest} {fastest}");
 }
 
@@ -137,22 +138,23 @@ fn every_strip_is_the_curl_of_its_potential() {
         let inside = points.iter().filter(|point| field.velocity(**point) != DVec3::ZERO).count();
         assert!(inside > 5, "{index}: {inside}");
         let seen = deviation(&*field, &points, 1e-5);
-        // Truncation: h²/6 of derivatives of the profile of the order of 60/R³ and 360/R⁴, 1e-6; a step h across a knot of the
-        // spline, where third derivatives jump, leaves h times that jump over the squared support.
+        // Truncation: h²/6 of derivatives of the profile of the order of 60/R³ and 360/R⁴, 1e-6. A
+        // step h across a knot of the spine, where third derivatives jump, adds h times the jump
+        // over the squared support.
         assert!(seen.curl < 1e-4 && seen.divergence < 3e-3 && seen.gradient < 1e-4, "{index}: {seen:?}");
     }
 }
 
 #[test]
-fn nothing_flows_out_of_spheres() {
-    // All but the splines that stand still, which are those that change their shape, at another time.
+fn the_net_flux_is_zero() {
+    // Skips the constant splines; the deforming ones equal them at another time.
     for (index, strip) in all_strips().iter().enumerate().filter(|(index, _)| !(1..5).contains(&(index % 9))) {
         let flux = worst_field_flux(&*strip.at(0.4), |_| f64::INFINITY, 0.7);
         assert!(flux < QUADRATURE_NOISE, "{index}: {flux:e}");
     }
 }
 
-/// Speed of change of the velocity over the end plane of the spine.
+/// Largest change of the velocity across the end plane of the spine, over 2e-7.
 fn jump_at_the_end(strip: &Strip) -> f64 {
     let field = strip.at(0.0);
     let end = *START.last().unwrap();
@@ -174,15 +176,16 @@ fn the_ends_are_continuous() {
     for shape in [StripShape::round(0.2, 0.25, Profile::Quintic).unwrap(), square()] {
         let at_end =
             |motion| jump_at_the_end(&Strip::new(StripSpine::through(&START).unwrap(), shape.clone(), motion).unwrap());
-        // Along: Lipschitz, a slope near 10 over 2e-7. Across the ends fade to nothing: the first derivative vanishes too.
+        // Along: Lipschitz, with a slope near 10 over 2e-7. Across: the field fades to zero at the
+        // ends, and so does its first derivative.
         assert!(at_end(ALONG) < 5e-6, "{:e}", at_end(ALONG));
         assert!(at_end(ACROSS) < 1e-12, "{:e}", at_end(ACROSS));
     }
 }
 
 #[test]
-fn two_half_rings_carry_like_a_ring() {
-    // Two arcs that overlap by their fading ends, where the two shares add up to one.
+fn two_half_rings_move_material_like_a_ring() {
+    // Two arcs overlap by their fading ends, where the two weights add up to one.
     let fade = 0.55;
     let half = |middle: f64| {
         let reach = 0.5 * (PI + fade);
@@ -196,7 +199,8 @@ fn two_half_rings_carry_like_a_ring() {
         let (sin, cos) = libm::sincos(TAU * f64::from(index) / 200.0);
         let radius = 1.0 + 0.17 * libm::cos(0.9 * f64::from(index));
         let point = DVec3::new(radius * cos, radius * sin, 0.17 * libm::sin(0.9 * f64::from(index)));
-        // The core moves by 1/(1 − κξ) = 1/ρ where the closed form has one speed. The arc length is interpolated.
+        // The core moves at 1/(1 − κξ) = 1/ρ, where the closed form has constant speed. The arc
+        // length is interpolated.
         assert!(velocity(point).distance(DVec3::Z / radius) < 1e-9, "{index}");
     }
     let sum = |points: &PointBlock| {
@@ -212,7 +216,7 @@ fn two_half_rings_carry_like_a_ring() {
 }
 
 #[test]
-fn beyond_the_clearance_there_is_no_field_now_or_soon() {
+fn the_field_is_zero_within_the_clearance_now_and_soon() {
     for (index, strip) in all_strips().iter().enumerate() {
         let (now, later) = (strip.at(0.3), strip.at(0.5));
         let approach = 0.2 * strip.approach_speed();
@@ -267,15 +271,16 @@ fn a_polygon_of_many_corners_is_a_round_strip() {
             [polygon.clone(), round.clone()].map(|shape| Strip::new(spine(), shape, motion).unwrap().at(0.0));
         for point in near_points(200) {
             let difference = polygon.velocity(point).distance(round.velocity(point));
-            // A 48-gon is 0.2 · (π/48)²/2 = 4e-4 inside its circle and its spline as much again; velocities change by up to 45 over a unit. Across, the
-            // ends fade over a cell more, 0.03 of 0.45, with a slope of 1.9.
+            // A 48-gon is 0.2 · (π/48)²/2 = 4e-4 inside its circle, and the spline deviates by as
+            // much; velocities change by up to 45 per unit. Across, the ends fade over one more
+            // cell, 0.03 of 0.45, with a slope of 1.9.
             assert!(difference < if motion == ALONG { 0.05 } else { 0.13 }, "{point}: {difference}");
         }
     }
 }
 
 #[test]
-fn a_section_does_not_turn_about_the_spine() {
+fn a_section_does_not_rotate_about_the_spine() {
     let spine = SpineInstant::new(
         SpineCurve::Other(Arc::new(helix())),
         Some(StartFrame { reference: DVec3::NEG_X, tangent: helix().jet(0.0).tangent() }),
@@ -285,21 +290,23 @@ fn a_section_does_not_turn_about_the_spine() {
     for point in [helix().position(2.0 / helix_speed()) + 0.1 * DVec3::Z, end] {
         let station = spine.station(point);
         let normal = spine.normal(&station);
-        // Rotation-minimizing with respect to Frenet: turned back by the torsion times the length.
+        // Relative to the Frenet frame, the rotation-minimizing frame rotates back by torsion times
+        // length.
         let frenet = helix().jet(station.parameter).normal().unwrap();
         let angle = libm::atan2(normal.vector.cross(frenet).dot(station.tangent), normal.vector.dot(frenet));
         let length = station.parameter * helix_speed();
-        // Double reflection over steps of 0.25: K h⁴/720 a length of 4, with κ² τ³ = 0.02, and the spline's h⁴ as much.
+        // Double reflection over steps of 0.25: K h⁴/720 for a length of 4, with κ² τ³ = 0.02, plus
+        // as much from the h⁴ of the spline.
         assert!((angle - jet.torsion() * length).abs() < 1e-4, "{angle}");
-        // The derivative has no part across the spine: that is what rotation-minimizing means.
-        // The interpolant's derivative is of third order in the steps of 0.25.
+        // A rotation-minimizing frame has a derivative without a part normal to both frame vector
+        // and tangent. The derivative of the interpolant is of third order in the steps of 0.25.
         let turn = normal.derivative.dot(station.tangent.cross(normal.vector));
         assert!(turn.abs() < 5e-3, "{turn}");
     }
 }
 
 #[test]
-fn strips_that_cannot_be_are_refused() {
+fn rejects_invalid_strips() {
     let spine = || StripSpine::through(&START).unwrap();
     let error = |spine: StripSpine, shape: StripShape, motion| Strip::new(spine, shape, motion).unwrap_err();
     let wide = StripShape::round(0.9, 0.5, Profile::Quintic).unwrap();
@@ -331,7 +338,7 @@ fn strips_that_cannot_be_are_refused() {
     );
     let closed = StripSpine::along(Arc::new(circle));
     assert_eq!(error(closed.clone(), square(), ALONG), StripError::Closed);
-    // A closed spine has no ends that fade.
+    // A closed spine does not fade.
     let hoop = Strip::new(closed, round(), StripMotion::Across { travel: DVec3::Z }).unwrap().at(0.0);
     assert!(hoop.velocity(DVec3::X).distance(DVec3::Z) < 1e-14);
     let tangent =
@@ -340,6 +347,6 @@ fn strips_that_cannot_be_are_refused() {
     assert_eq!(error(line, tangent, ALONG), StripError::Reference);
     let ball = Tool::new(Arc::new(Sphere::new(0.5).unwrap()), 0.7, Profile::Quintic).unwrap();
     let refused = error(StripSpine::along(Arc::new(helix())), StripShape::tool(Arc::new(ball)).unwrap(), ALONG);
-    // All of the sphere's support is about one away from the helix, some of it farther than its reach.
+    // The support of the sphere is about one unit from the helix, and part of it exceeds the reach.
     assert!(matches!(refused, StripError::Reach { extent, .. } if extent > 1.1), "{refused}");
 }

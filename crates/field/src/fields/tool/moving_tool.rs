@@ -1,7 +1,9 @@
-//! The field of a tool that moves with a constant body twist, in world coordinates.
+//! Field of a tool that moves with a constant body twist, in world coordinates.
 //!
-//! [`Move`](crate::Move) integrates the same field in tool coordinates, where it stands still, which is faster; in world
-//! coordinates it can be combined with what stands still in the world.
+//! [`Move`](crate::Move) integrates the same field in tool coordinates, where it is constant in
+//! time, which is faster. In world coordinates the field can be combined with masks and mirror
+//! planes, which are fixed in the world. Formula and source are those of
+//! [`RigidField`](crate::RigidField).
 
 use std::sync::Arc;
 
@@ -15,7 +17,25 @@ use crate::fields::{
     tool::gauge::Cubic,
 };
 
-/// A tool on its way along one screw, from time 0 to 1.
+/// A tool that moves along one screw over the time from 0 to 1.
+///
+/// # Examples
+/// ```
+/// use std::sync::Arc;
+///
+/// use glam::DVec3;
+/// use isochore_field::{BodyTwist, MovingField, MovingTool, Pose, Profile, Tool};
+/// use isochore_mesh::Sphere;
+///
+/// let ball = Tool::new(Arc::new(Sphere::new(0.4).unwrap()), 0.3, Profile::Quintic).unwrap();
+/// let twist = BodyTwist { linear: 2.0 * DVec3::X, angular: DVec3::ZERO };
+/// let moving = MovingTool::new(Arc::new(ball), Pose::IDENTITY, twist);
+///
+/// // Halfway, the ball is centered at x = 1.
+/// let field = moving.at(0.5);
+/// assert_eq!(field.velocity(DVec3::X), 2.0 * DVec3::X);
+/// assert_eq!(field.velocity(DVec3::ZERO), DVec3::ZERO);
+/// ```
 #[derive(Debug, Clone)]
 pub struct MovingTool {
     tool: Arc<Tool>,
@@ -24,18 +44,19 @@ pub struct MovingTool {
 }
 
 impl MovingTool {
-    /// The way of `tool` from `start` with a constant `twist`, in tool coordinates, for one unit of time.
+    /// The motion of `tool` from the pose `start` (world from tool) with a constant `twist`, in
+    /// tool coordinates, for one unit of time.
     pub fn new(tool: Arc<Tool>, start: Pose, twist: BodyTwist) -> Self {
         Self { tool, start, twist }
     }
 
-    /// The motion of the tool's center, in tool coordinates.
+    /// Motion of the tool's center, in tool coordinates.
     fn motion(&self) -> RigidMotion {
         let center = self.tool.center();
         RigidMotion { center, linear: self.twist.velocity(center), angular: self.twist.angular }
     }
 
-    /// The gauge of the potential at `time`, or `None` if the tool has no end.
+    /// Gauge of the potential at `time`, or `None` if the tool is unbounded.
     pub(crate) fn gauge_at(&self, time: f64) -> Option<RigidGauge> {
         let (pose, motion) = (self.start.moved(&self.twist, time), self.motion());
         let placement = Placement::from(&pose);
@@ -63,7 +84,7 @@ impl MovingField for MovingTool {
         let motion = self.motion();
         let support = self.tool.support_bounds();
         let corners = support.corners().map(|corner| pose.transform(corner));
-        // What has no end has none either when it is turned.
+        // An unbounded box stays unbounded; rotating its infinite corners would give NaN.
         let bounds = if support.size().is_finite() { Aabb::of(corners) } else { support };
         let gauge = self.tool.gauge().map(|gauge| gauge.of(&motion));
         Box::new(PlacedTool {
@@ -89,15 +110,15 @@ impl MovingField for MovingTool {
     }
 }
 
-/// A tool where it is at one instant, and how it moves.
+/// A tool at one instant, with its motion.
 #[derive(Debug, Clone)]
 struct PlacedTool {
     tool: Arc<Tool>,
     pose: Pose,
     placement: Placement,
-    /// In tool coordinates.
+    /// Motion in tool coordinates.
     motion: RigidMotion,
-    /// What is added to the potential.
+    /// Polynomial whose gradient is added to the potential.
     gauge: Option<Cubic>,
     bounds: Aabb,
 }
@@ -116,7 +137,7 @@ impl Field for PlacedTool {
             let (weight, slope) = (profile.value[lane], profile.slope[lane] / support);
             if distance.value[lane] >= support {
                 let beyond = (distance.value[lane] - support) / self.tool.distance().lipschitz();
-                // Beyond the samples of a grid the distance is infinite, and only the box is known.
+                // Beyond the samples of a grid the distance is infinite; use the box instead.
                 let clearance = if beyond.is_finite() { beyond } else { self.bounds.distance(points.get(lane)) };
                 out.set_outside(lane, clearance);
                 continue;

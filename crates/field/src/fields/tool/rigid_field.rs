@@ -1,16 +1,19 @@
-//! The one kernel: the divergence-free field of a rigidly moving tool.
+//! Kernel of tool strokes: the divergence-free field of a rigidly moving tool.
 //!
 //! ```text
 //! V = curl(g(d/R) A) = g (v + ω×r) + (g′/R) n × A,   A = ½ v×r + ⅓ (ω×r)×r
 //! ```
 //!
-//! d is the signed distance, n its gradient, R the support, g the profile, v the velocity of the tool's center, ω its angular
-//! velocity and r the position relative to the center. Where g is one the field is the tool's rigid motion; beyond the support
-//! it is zero; and being a curl it is divergence-free in between, whatever the shape. Only d and n are needed, and n must be
-//! the gradient of the very function that gives d: with any other gradient the field is no curl.
+//! d is the signed distance, n its gradient, R the support and g the profile. v is the velocity of
+//! the tool's center, ω its angular velocity and r the position relative to the center.
 //!
-//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, equations 12.2 (ω = 0) and 12.3 (v = 0), with the
-//! factors −1/(2R²) and −1/(3R²) that make the tool's own speed that of its surface.
+//! Where g is one, the field is the rigid motion of the tool; beyond the support it is zero. As a
+//! curl, it is divergence-free for any shape. The gradient n must be that of the very function that
+//! gives d; with any other gradient the field is not a curl.
+//!
+//! Source: D. Zheng, *Studies on Motion and Deformation in Graphics*, 2008, equations 12.2 (ω = 0)
+//! and 12.3 (v = 0), with the factors −1/(2R²) and −1/(3R²) for which the surface moves at the
+//! speed of the tool.
 
 use glam::DVec3;
 use isochore_mesh::{DistanceBlock, LANES, PointBlock};
@@ -19,21 +22,39 @@ use multiversion::multiversion;
 use super::{Tool, gauge::Cubic};
 use crate::fields::{BodyTwist, field::curl_of_product, rigid_motion::RigidMotion};
 
-/// The field of a tool that moves with a twist, in tool coordinates, where it does not change with time.
+/// The field of a tool that moves with a constant twist, in tool coordinates, in which the field
+/// does not change with time.
+///
+/// # Examples
+/// ```
+/// use std::sync::Arc;
+///
+/// use glam::DVec3;
+/// use isochore_field::{BodyTwist, Profile, RigidField, Tool};
+/// use isochore_mesh::Sphere;
+///
+/// let tool = Tool::new(Arc::new(Sphere::new(0.4).unwrap()), 0.3, Profile::Quintic).unwrap();
+/// let field = RigidField::new(&tool, BodyTwist { linear: DVec3::X, angular: DVec3::ZERO });
+///
+/// assert_eq!(field.velocity(DVec3::ZERO), DVec3::X); // the core moves with the tool
+/// assert!(field.velocity(DVec3::Y * 0.5).x < 0.0); // the material beside it flows back
+/// assert_eq!(field.velocity(DVec3::Y), DVec3::ZERO); // beyond the support
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct RigidField<'a> {
     tool: &'a Tool,
     twist: BodyTwist,
-    /// About the tool's center.
+    /// Motion about the tool's center.
     motion: RigidMotion,
-    /// What is added to the potential.
+    /// Polynomial whose gradient is added to the potential.
     gauge: Option<Cubic>,
 }
 
-/// The field at the points of a block.
+/// Values of a [`RigidField`] at the points of a block.
 #[derive(Debug, Clone, Copy)]
 pub struct VelocityBlock {
-    /// Velocity past the tool, V − (v + ω×y), in tool axes: what a point's tool coordinates change by.
+    /// Velocity relative to the tool, V − (v + ω×y), in tool axes: the rate of change of the tool
+    /// coordinates y of a point.
     pub relative: PointBlock,
     /// Signed distance from the tool.
     pub distance: [f64; LANES],
@@ -47,19 +68,19 @@ impl VelocityBlock {
 }
 
 impl<'a> RigidField<'a> {
-    /// The field of `tool` as it moves with `twist`.
+    /// The field of `tool` moving with `twist`, in tool coordinates.
     pub fn new(tool: &'a Tool, twist: BodyTwist) -> Self {
         let center = tool.center();
         let motion = RigidMotion { center, linear: twist.velocity(center), angular: twist.angular };
         Self { tool, twist, motion, gauge: tool.gauge().map(|gauge| gauge.of(&motion)) }
     }
 
-    /// The tool that moves.
+    /// The moving tool.
     pub fn tool(&self) -> &'a Tool {
         self.tool
     }
 
-    /// The field at `points`, given in tool coordinates.
+    /// Evaluates the field at `points`, given in tool coordinates.
     ///
     /// In the rigid core the relative velocity is exactly zero.
     pub fn evaluate_into(&self, points: &PointBlock, out: &mut VelocityBlock) {
@@ -77,7 +98,7 @@ impl<'a> RigidField<'a> {
         }
     }
 
-    /// The velocity V at one point, in tool coordinates and tool axes.
+    /// Velocity V at one point, in tool coordinates and tool axes.
     pub fn velocity(&self, point: DVec3) -> DVec3 {
         let mut block = VelocityBlock::REST;
         self.evaluate_into(&PointBlock::splat(point), &mut block);
@@ -85,7 +106,7 @@ impl<'a> RigidField<'a> {
     }
 }
 
-/// The field without a gauge, from the distances at `points`.
+/// The field without the added gauge, from the distances at `points`.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn relative_velocity(
     tool: &Tool,

@@ -1,4 +1,12 @@
-//! The gauge that makes the flow along a tool's surface small.
+//! Fit of the gauge that minimizes the tangential potential on a tool's surface.
+//!
+//! ```text
+//! minimize ∫ |(A + ∇Ψ) tangential|² over the surface
+//! ```
+//!
+//! The flow around the tool is (g′/R) n × (A + ∇Ψ), so a small tangential part gives a slow flow.
+//! The surface is sampled along the lines of a grid; the normal equations are solved by
+//! elimination.
 
 use glam::DVec3;
 use isochore_mesh::{Distance, DistanceBlock, LANES, PointBlock};
@@ -9,32 +17,35 @@ use super::{
 };
 use crate::fields::rigid_motion::RigidMotion;
 
-/// Cells along each side of the tool's bounds, between whose corners its surface is looked for. More: time, growing with the
-/// cube. Fewer: thin parts are overlooked.
+/// Number of cells along each side of the tool's bounds; the surface is searched between their
+/// corners. Larger: the time grows with the cube. Smaller: thin parts are missed.
 const CELLS: usize = 48;
 
-/// Added to the diagonal of the normal equations, as a share of its mean. Larger: the fit falls visibly short of the best.
-/// Smaller: what does not show on the surface, as |r|² on a sphere, grows out of rounding.
+/// Ridge added to the diagonal of the normal equations, relative to its mean. Larger: the fit is
+/// visibly worse than the optimum. Smaller: terms that vanish on the surface, such as |r|² on a
+/// sphere, grow from rounding errors.
 const RIDGE: f64 = 1e-9;
 
-/// A higher degree must not raise the largest speed by more than this share, which leaves room for rounding and the ridge.
+/// Relative amount by which a higher degree may raise the largest tangential potential, to allow
+/// for rounding and the ridge. Larger: accepts fits with a faster flow. Smaller: rejects good fits.
 const MAXIMUM_SLACK: f64 = 1e-6;
 
-/// A point of the surface: where, the unit normal, and the area it stands for.
+/// A surface point relative to the center, its unit normal, and the surface area it represents.
 struct Sample {
-    place: DVec3,
+    position: DVec3,
     normal: DVec3,
     area: f64,
 }
 
 impl Gauge {
-    /// `share` of the polynomials that make |(A + ∇Ψ) along the surface|² least in the mean over the surface of `distance`; A
-    /// is centered on `center`.
+    /// The `fraction` of the polynomials that minimize the mean of |(A + ∇Ψ) tangential|² over the
+    /// surface of `distance`. A is centered on `center`.
     ///
-    /// Of each basis motion the degree is 3, or the highest below that does not raise the maximum over the surface.
-    pub(crate) fn fitted(distance: &dyn Distance, center: DVec3, share: f64) -> Self {
+    /// For each basis motion the degree is the highest up to 3 that does not raise the maximum over
+    /// the surface.
+    pub(crate) fn fitted(distance: &dyn Distance, center: DVec3, fraction: f64) -> Self {
         let samples = surface_samples(distance, center);
-        // Coordinates of the order of one along each axis, so that no term drowns the others.
+        // Scales the coordinates to about one on each axis, so that no term dominates.
         let size = 0.5 * distance.bounds().size();
         let unit = |axis: usize, value: f64| std::array::from_fn::<f64, 3, _>(|i| if i == axis { value } else { 0.0 });
         let motions = std::array::from_fn(|index| {
@@ -44,28 +55,30 @@ impl Gauge {
             let limit = largest(&samples, &motion, &Cubic::ZERO) * (1.0 + MAXIMUM_SLACK);
             let fits = (1..=3).rev().map(|degree| fit(&samples, &motion, degree, size));
             let best = fits.into_iter().flatten().find(|cubic| largest(&samples, &motion, cubic) <= limit);
-            best.unwrap_or(Cubic::ZERO) * share
+            best.unwrap_or(Cubic::ZERO) * fraction
         });
         Self { motions }
     }
 }
 
-/// (A + ∇Ψ) along the surface.
-fn along(sample: &Sample, motion: &RigidMotion, cubic: &Cubic) -> DVec3 {
-    (motion.potential(sample.place).0 + cubic.gradient(sample.place)).reject_from_normalized(sample.normal)
+/// Tangential part of A + ∇Ψ.
+fn tangential(sample: &Sample, motion: &RigidMotion, cubic: &Cubic) -> DVec3 {
+    (motion.potential(sample.position).0 + cubic.gradient(sample.position)).reject_from_normalized(sample.normal)
 }
 
+/// Largest tangential potential over the samples.
 fn largest(samples: &[Sample], motion: &RigidMotion, cubic: &Cubic) -> f64 {
-    samples.iter().map(|sample| along(sample, motion, cubic).length()).fold(0.0, f64::max)
+    samples.iter().map(|sample| tangential(sample, motion, cubic).length()).fold(0.0, f64::max)
 }
 
-/// Points where lines of a grid through the bounds cross the surface, relative to `center`.
+/// Points where grid lines through the bounds cross the surface, relative to `center`.
 ///
-/// A line along an axis stands for the area of a cell across it, divided by the cosine between axis and normal; a weight of the
-/// squared cosine makes the three families of lines add up to the area.
+/// A line along an axis represents the area of a cell across it, divided by the cosine between axis
+/// and normal. Weighted by the squared cosine, the three families of lines add up to the area of
+/// the surface.
 fn surface_samples(distance: &dyn Distance, center: DVec3) -> Vec<Sample> {
     let bounds = distance.bounds();
-    // A little more than the bounds, so that no line runs along a flat side.
+    // Slightly larger than the bounds, so that no line runs inside a flat side.
     let bounds = bounds.expanded(0.01 * bounds.size().min_element());
     let cell = bounds.size() / CELLS as f64;
     let mut samples = Vec::new();
@@ -92,13 +105,11 @@ fn surface_samples(distance: &dyn Distance, center: DVec3) -> Vec<Sample> {
                         && before.is_finite()
                         && value.is_finite()
                     {
-                        let mut place = nodes[lane];
-                        place[axis] -= cell[axis] * value / (value - before);
-                        // One step down the gradient takes off what the surface's bend adds to the secant.
-                        let (rest, gradient) = distance.sample(place);
-                        let Some(normal) = gradient.try_normalize() else { continue };
+                        let mut crossing = nodes[lane];
+                        crossing[axis] -= cell[axis] * value / (value - before);
+                        let Some((position, normal)) = projected(distance, crossing) else { continue };
                         let area = normal[axis].abs() * cell[u] * cell[v];
-                        samples.push(Sample { place: place - rest * normal - center, normal, area });
+                        samples.push(Sample { position: position - center, normal, area });
                     }
                 }
             }
@@ -107,18 +118,27 @@ fn surface_samples(distance: &dyn Distance, center: DVec3) -> Vec<Sample> {
     samples
 }
 
-/// The polynomial of this degree that makes |(A + ∇Ψ) along the surface|² least; none where there is no surface.
+/// A point near the surface moved onto it by one Newton step, and the unit normal. The step removes
+/// the error of the secant on a curved surface.
+fn projected(distance: &dyn Distance, point: DVec3) -> Option<(DVec3, DVec3)> {
+    let (rest, gradient) = distance.sample(point);
+    let normal = gradient.try_normalize()?;
+    Some((point - rest * normal, normal))
+}
+
+/// The polynomial of this degree that minimizes |(A + ∇Ψ) tangential|², or `None` if the normal
+/// equations are singular, as they are without samples.
 fn fit(samples: &[Sample], motion: &RigidMotion, degree: usize, size: DVec3) -> Option<Cubic> {
     let terms = TERMS[degree];
     let scale: Vec<f64> = POWERS[..terms].iter().map(|powers| scale_of(powers, size)).collect();
     let mut matrix = vec![vec![0.0; terms + 1]; terms];
     let mut slopes = vec![DVec3::ZERO; terms];
     for sample in samples {
-        let target = motion.potential(sample.place).0.reject_from_normalized(sample.normal);
+        let target = motion.potential(sample.position).0.reject_from_normalized(sample.normal);
         for (term, slope) in slopes.iter_mut().enumerate() {
             let mut alone = Cubic::ZERO;
             alone.0[term] = scale[term];
-            *slope = alone.gradient(sample.place).reject_from_normalized(sample.normal);
+            *slope = alone.gradient(sample.position).reject_from_normalized(sample.normal);
         }
         for row in 0..terms {
             for column in row..terms {
@@ -127,6 +147,7 @@ fn fit(samples: &[Sample], motion: &RigidMotion, degree: usize, size: DVec3) -> 
             matrix[row][terms] -= sample.area * slopes[row].dot(target);
         }
     }
+    // Regularize, then fill the lower triangle from the upper one.
     let ridge = RIDGE * (0..terms).map(|term| matrix[term][term]).sum::<f64>() / terms as f64;
     for row in 0..terms {
         matrix[row][row] += ridge;
@@ -142,14 +163,16 @@ fn fit(samples: &[Sample], motion: &RigidMotion, degree: usize, size: DVec3) -> 
     Some(cubic)
 }
 
-/// One over the size of the term at the corner of the bounds, times a length, so that its gradient is of the order of one.
+/// Scale of a term: the inverse of its size at the corner of the bounds, times a length, so that
+/// its gradient is about one.
 fn scale_of(powers: &[i32; 3], size: DVec3) -> f64 {
     let product: f64 =
         powers.iter().zip(size.to_array()).map(|(&power, size)| (0..power).map(|_| size).product::<f64>()).product();
     size.min_element() / product
 }
 
-/// Solves a symmetric positive definite system, whose last column is the right side, by elimination.
+/// Solves a symmetric positive definite system by elimination. The last column is the right-hand
+/// side. Returns `None` if a pivot is not positive.
 fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let count = rows.len();
     for pivot in 0..count {

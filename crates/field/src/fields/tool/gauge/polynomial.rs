@@ -1,13 +1,13 @@
-//! Polynomials of degree three in space, without constant.
+//! Cubic polynomials in space without a constant term.
 
 use std::ops::{Add, Mul, Sub};
 
 use glam::DVec3;
 
-/// Coefficients that a polynomial of degree 1, 2 and 3 has.
+/// Number of terms of a polynomial of degree 0, 1, 2 and 3 without constant term.
 pub(super) const TERMS: [usize; 4] = [0, 3, 9, 19];
 
-/// Powers of x, y and z of each term, by degree.
+/// Powers of x, y and z of each term, by ascending degree.
 pub(super) const POWERS: [[i32; 3]; 19] = [
     [1, 0, 0],
     [0, 1, 0],
@@ -30,7 +30,7 @@ pub(super) const POWERS: [[i32; 3]; 19] = [
     [0, 0, 3],
 ];
 
-/// A polynomial of degree three without constant: a coefficient for each of [`POWERS`].
+/// A cubic polynomial without constant term: one coefficient for each of [`POWERS`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Cubic(pub(super) [f64; 19]);
 
@@ -60,7 +60,7 @@ impl Cubic {
         DVec3::AXES.into_iter().fold(Self::ZERO, |sum, axis| sum + Self::product(axis, axis, c))
     }
 
-    /// The gradient at `r`.
+    /// Gradient at `r`.
     #[inline(always)]
     pub(crate) fn gradient(&self, r: DVec3) -> DVec3 {
         let c = &self.0;

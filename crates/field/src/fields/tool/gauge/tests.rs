@@ -13,7 +13,8 @@ use crate::fields::{
     },
 };
 
-/// Root mean square and largest length of the potential along the surface of an ellipsoid, for a motion of its center.
+/// Root mean square and maximum of the tangential potential on the surface of an ellipsoid, for a
+/// motion of its center.
 fn along_surface(radii: DVec3, gauge: Option<&Gauge>, linear: DVec3, angular: DVec3) -> [f64; 2] {
     let motion = RigidMotion { center: DVec3::ZERO, linear, angular };
     let cubic = gauge.map_or(Cubic::ZERO, |gauge| gauge.of(&motion));
@@ -29,10 +30,10 @@ fn along_surface(radii: DVec3, gauge: Option<&Gauge>, linear: DVec3, angular: DV
             let normal = unit / radii;
             let weight = libm::sin(theta) * normal.length() * radii.element_product();
             let potential = motion.potential(point).0 + cubic.gradient(point);
-            let along = potential.reject_from(normal).length();
-            sum += weight * along * along;
+            let tangential = potential.reject_from(normal).length();
+            sum += weight * tangential * tangential;
             area += weight;
-            largest = largest.max(along);
+            largest = largest.max(tangential);
         }
     }
     [(sum / area).sqrt(), largest]
@@ -42,68 +43,70 @@ fn fitted(shape: &dyn Distance) -> Gauge {
     Gauge::fitted(shape, shape.centroid(), 1.0)
 }
 
-/// The prototype's table, whose values have three digits.
+/// Compares with the table of the prototype, whose values have three digits.
 #[track_caller]
 fn check(found: [f64; 2], expected: [f64; 2]) {
     for (found, expected) in found.into_iter().zip(expected) {
-        // Half a unit of the last digit, and what the centers of its triangles fall short of the largest.
+        // Half a unit of the last digit, plus the error of a maximum over the triangle centers of
+        // the prototype.
         assert!((found - expected).abs() < 2.5e-3, "{found} against {expected}");
     }
 }
 
 #[test]
-fn on_a_sphere_translation_is_best_as_it_is_and_rotation_can_do_without_any_flow() {
+fn on_a_sphere_the_fit_keeps_translation_and_removes_the_flow_of_rotation() {
     let radii = DVec3::splat(0.4);
     let gauge = fitted(&Sphere::new(0.4).unwrap());
     check(along_surface(radii, None, DVec3::X, DVec3::ZERO), [0.163, 0.200]);
     check(along_surface(radii, Some(&gauge), DVec3::X, DVec3::ZERO), [0.163, 0.200]);
     check(along_surface(radii, None, DVec3::ZERO, DVec3::Y), [0.043, 0.053]);
-    // What the ridge of the fit leaves.
+    // The remainder is due to the ridge of the fit.
     assert!(along_surface(radii, Some(&gauge), DVec3::ZERO, DVec3::Y)[1] < 1e-6);
 }
 
 #[test]
-fn an_ellipsoid_that_moves_sideways_gets_by_with_half_the_flow() {
+fn the_fit_halves_the_flow_around_a_sideways_ellipsoid() {
     let radii = DVec3::new(0.8, 0.2, 0.2);
     let gauge = fitted(&Ellipsoid::new(radii).unwrap());
     check(along_surface(radii, None, DVec3::Y, DVec3::ZERO), [0.171, 0.398]);
     check(along_surface(radii, Some(&gauge), DVec3::Y, DVec3::ZERO), [0.116, 0.180]);
-    // A turn about the tip: that of the center, and the velocity that it gives the center.
+    // A rotation about the tip: a rotation about the center plus the velocity it gives the center.
     check(along_surface(radii, Some(&gauge), -0.8 * DVec3::Y, DVec3::Z), [0.098, 0.175]);
 }
 
 #[test]
-fn no_motion_gets_a_faster_flow() {
+fn the_fit_never_speeds_up_the_flow() {
     let radii = DVec3::new(0.5, 0.3, 0.2);
     let gauge = fitted(&Ellipsoid::new(radii).unwrap());
     for axis in DVec3::AXES {
         for (linear, angular) in [(axis, DVec3::ZERO), (DVec3::ZERO, axis)] {
             let [before, after] = [None, Some(&gauge)].map(|gauge| along_surface(radii, gauge, linear, angular));
-            // The fit and the check look at other points of the surface.
+            // The fit and this check sample different points of the surface.
             assert!(after[0] <= before[0] + 1e-6 && after[1] <= before[1] * 1.001, "{before:?} {after:?}");
         }
     }
 }
 
 #[test]
-fn a_sampled_mesh_gets_nearly_the_gauge_of_its_shape() {
+fn a_sampled_mesh_has_nearly_the_gauge_of_its_shape() {
     let mesh = primitives::icosphere(0.4, 4);
     let options = DistanceFieldOptions { resolution: 32, padding: Padding::Reach(0.3), ..Default::default() };
     let sampled = DistanceField::new(&mesh, &options, &NoProgress).unwrap();
     let gauge = fitted(&sampled);
-    // A mesh of 5120 triangles is off its sphere by 1e-3 of the radius, and its normals by as much times a few cells.
+    // The mesh of 5120 triangles deviates from the sphere by 1e-3 of the radius; its normals
+    // deviate by that much over a few cells.
     assert!(along_surface(DVec3::splat(0.4), Some(&gauge), DVec3::ZERO, DVec3::Y)[1] < 2e-3);
 }
 
-fn tool(share: f64) -> Arc<Tool> {
+fn tool(fraction: f64) -> Arc<Tool> {
     let shape = Ellipsoid::new(DVec3::new(0.5, 0.2, 0.2)).unwrap();
-    Arc::new(Tool::new(Arc::new(shape), 0.3, Profile::Quintic).unwrap().with_free_form(share).unwrap())
+    Arc::new(Tool::new(Arc::new(shape), 0.3, Profile::Quintic).unwrap().with_free_form(fraction).unwrap())
 }
 
 const TWIST: BodyTwist = BodyTwist { linear: DVec3::new(0.3, -0.2, 1.0), angular: DVec3::new(0.4, 0.7, -0.3) };
 
 #[test]
-fn only_the_flow_along_the_surface_changes() {
+fn only_the_tangential_flow_changes() {
     let (plain, free) = (tool(0.0), tool(1.0));
     assert!(plain.gauge().is_none());
     let [plain_field, free_field] = [&plain, &free].map(|tool| RigidField::new(tool, TWIST));
@@ -111,7 +114,7 @@ fn only_the_flow_along_the_surface_changes() {
     for point in scattered_points(500, 0.8) {
         let (distance, normal) = plain.distance().sample(point);
         let [before, after] = [plain_field.velocity(point), free_field.velocity(point)];
-        // On every level of the distance the potential's part along it alone is free.
+        // On a level set of the distance, only the tangential part of the potential is free.
         assert!((after - before).dot(normal).abs() < 1e-14, "{point}");
         if distance <= 0.0 || distance >= 0.3 {
             assert_eq!(before, after);
@@ -124,15 +127,16 @@ fn only_the_flow_along_the_surface_changes() {
 
 #[test]
 fn the_field_is_the_curl_of_its_potential_and_has_no_net_flux() {
-    for share in [0.5, 1.0] {
-        let tool = tool(share);
+    for fraction in [0.5, 1.0] {
+        let tool = tool(fraction);
         let field = MovingTool::new(Arc::clone(&tool), Pose::IDENTITY, TWIST).at(0.0);
         let seen = deviation(&*field, &scattered_points(200, 0.8), 1e-4);
-        // h²/6 of derivatives of the quintic over a support of 0.3, of the order of 60/R³ and 360/R⁴.
+        // Truncation: h²/6 of derivatives of the quintic over a support of 0.3, of the order of
+        // 60/R³ and 360/R⁴.
         assert!(seen.curl < 1e-4 && seen.divergence < 1e-3 && seen.gradient < 1e-4, "{seen:?}");
         assert!(worst_field_flux(&*field, |_| f64::INFINITY, 0.5) < QUADRATURE_NOISE);
         for point in scattered_points(100, 0.8) {
-            // The same in world and in tool coordinates, which are equal here.
+            // World and tool coordinates are equal in this test.
             let velocity = RigidField::new(&tool, TWIST).velocity(point);
             assert!(field.velocity(point).distance(velocity) < 1e-14, "{point}");
         }
@@ -140,15 +144,15 @@ fn the_field_is_the_curl_of_its_potential_and_has_no_net_flux() {
 }
 
 #[test]
-fn shares_beyond_the_whole_are_refused() {
-    for share in [-0.1, 1.1, f64::NAN] {
+fn rejects_fractions_out_of_range() {
+    for fraction in [-0.1, 1.1, f64::NAN] {
         let tool = Tool::new(Arc::new(Sphere::new(0.4).unwrap()), 0.3, Profile::Quintic).unwrap();
-        assert!(matches!(tool.with_free_form(share), Err(ToolError::FreeForm(_))));
+        assert!(matches!(tool.with_free_form(fraction), Err(ToolError::FreeForm(_))));
     }
 }
 
 #[test]
-fn gradients_are_those_of_the_terms() {
+fn the_gradient_is_the_derivative() {
     let cubic = Cubic(std::array::from_fn(|term| 0.3 + 0.1 * term as f64));
     let value = |r: DVec3| -> f64 {
         let term = |(powers, c): (&[i32; 3], &f64)| {
@@ -158,6 +162,6 @@ fn gradients_are_those_of_the_terms() {
     };
     let (r, h) = (DVec3::new(0.3, -0.7, 0.5), 1e-5);
     let slope = DVec3::AXES.map(|axis| (value(r + h * axis) - value(r - h * axis)) / (2.0 * h));
-    // h²/6 of third derivatives near 10, and 1e-16/h of rounding.
+    // Truncation: h²/6 of third derivatives near 10; rounding: 1e-16/h.
     assert!(cubic.gradient(r).distance(DVec3::from_array(slope)) < 1e-9);
 }

@@ -29,8 +29,8 @@ fn shapes() -> Vec<(&'static str, Arc<dyn Distance>)> {
     ]
 }
 
-/// The profile's second derivative may jump at the edge of the support, and its first on the surface; elsewhere quadrature
-/// adapts by itself.
+/// Worst relative flux of a field. The second derivative of the profile may jump at the edge of the
+/// support and its first derivative on the surface; elsewhere the quadrature adapts without a hint.
 fn flux(field: &RigidField<'_>, size: f64) -> f64 {
     let (on_surface, at_edge) = match field.tool().profile() {
         Profile::Thesis | Profile::Quad => (true, true),
@@ -66,13 +66,13 @@ fn golden_velocities() {
         ([0.1, 0.1, 0.1], [0.400000000000000, -0.270000000000000, 0.970000000000000]),
     ];
     for (point, velocity) in golden {
-        // The golden digits end at 1e-15; a few roundings of numbers near one.
+        // The golden digits end at 1e-15; the rest is a few roundings of numbers near one.
         assert!(field.velocity(point.into()).distance(velocity.into()) < 3e-15, "{point:?}");
     }
 }
 
 #[test]
-fn no_tool_and_no_profile_has_a_net_flux() {
+fn every_tool_and_profile_has_zero_net_flux() {
     let profiles = || Profile::ALL.into_iter().chain([Profile::Quad, Profile::QuarticSquared]);
     let cases: Vec<_> =
         shapes().into_iter().flat_map(|shape| profiles().map(move |profile| (shape.clone(), profile))).collect();
@@ -83,8 +83,8 @@ fn no_tool_and_no_profile_has_a_net_flux() {
     });
 }
 
-/// The mistake of sampling distance and gradient on a grid and interpolating each for itself: the gradient then belongs to no
-/// function.
+/// Mistake to detect: distance and gradient sampled on a grid and interpolated separately. The
+/// gradient is then not that of any function.
 #[derive(Debug)]
 struct SeparateGradient {
     shape: Sphere,
@@ -92,13 +92,13 @@ struct SeparateGradient {
 }
 
 impl SeparateGradient {
-    /// The gradient of a sphere's distance at the nodes around `point`, interpolated trilinearly.
+    /// Gradient of a sphere's distance at the nodes around `point`, interpolated trilinearly.
     fn gradient(&self, point: DVec3) -> DVec3 {
         let scaled = point / self.cell;
-        let (low, share) = (scaled.floor(), scaled - scaled.floor());
+        let (low, fraction) = (scaled.floor(), scaled - scaled.floor());
         let corners = isochore_mesh::Aabb { min: DVec3::ZERO, max: DVec3::ONE }.corners();
         let weighted = corners.into_iter().map(|corner| {
-            let weights = corner * share + (1.0 - corner) * (1.0 - share);
+            let weights = corner * fraction + (1.0 - corner) * (1.0 - fraction);
             weights.element_product() * ((low + corner) * self.cell).normalize_or_zero()
         });
         weighted.sum()
@@ -123,7 +123,7 @@ impl Distance for SeparateGradient {
 }
 
 #[test]
-fn a_separate_gradient_is_found_out_by_its_flux() {
+fn the_flux_reveals_a_separate_gradient() {
     let shape = Sphere::new(0.4).unwrap();
     let exact = tool(shape, 0.3, Profile::Quintic);
     let separate = tool(SeparateGradient { shape, cell: 0.05 }, 0.3, Profile::Quintic);
@@ -132,7 +132,7 @@ fn a_separate_gradient_is_found_out_by_its_flux() {
 }
 
 #[test]
-fn a_tool_sampled_from_a_mesh_has_no_net_flux() {
+fn a_tool_sampled_from_a_mesh_has_zero_net_flux() {
     let mesh = primitives::box_mesh(DVec3::new(0.3, 0.2, 0.4), [3, 2, 4]);
     let options = DistanceFieldOptions { resolution: 32, padding: Padding::Reach(0.25), ..Default::default() };
     let sampled = DistanceField::new(&mesh, &options, &NoProgress).unwrap();
@@ -143,7 +143,7 @@ fn a_tool_sampled_from_a_mesh_has_no_net_flux() {
     }
 }
 
-/// V against the curl, by central differences, of the vector potential g(d/R) A.
+/// Compares V with the curl, by central differences, of the vector potential g(d/R) A.
 #[test]
 fn the_field_is_the_curl_of_its_potential() {
     let h = 1e-4;
@@ -163,14 +163,15 @@ fn the_field_is_the_curl_of_its_potential() {
             let slope = |axis: DVec3| (potential(point + h * axis) - potential(point - h * axis)) / (2.0 * h);
             let (dx, dy, dz) = (slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z));
             let curl = DVec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x);
-            // h²/6 of a third derivative of the order of g‴/R³ = 1e3, and jumps of the box's second derivative at its edges.
+            // Truncation: h²/6 of a third derivative of the order of g‴/R³ = 1e3. The second
+            // derivative of the distance from the box jumps at its edges.
             assert!(curl.distance(field.velocity(point)) < 2e-4, "{name} at {point}");
         }
     }
 }
 
 #[test]
-fn on_the_surface_the_normal_speed_is_the_tools() {
+fn the_normal_speed_on_the_surface_is_that_of_the_tool() {
     let tool = tool(Ellipsoid::new(DVec3::new(0.5, 0.3, 0.2)).unwrap(), 0.3, Profile::Contact);
     let field = RigidField::new(&tool, TWIST);
     for index in 0..50 {
@@ -179,13 +180,13 @@ fn on_the_surface_the_normal_speed_is_the_tools() {
         let point = unit * DVec3::new(0.5, 0.3, 0.2);
         let (_, normal) = tool.distance().sample(point);
         let speed = field.velocity(point).dot(normal);
-        // g = 1 up to 2 d/R, d being the distance's rounding.
+        // g = 1 up to 2 d/R, where d is the rounding error of the distance.
         assert!((speed - TWIST.velocity(point).dot(normal)).abs() < 1e-12);
     }
 }
 
 #[test]
-fn the_gauge_does_not_matter_in_the_core() {
+fn the_gauge_center_only_changes_the_flow_outside_the_core() {
     let tool = tool(Capsule::new(0.2, 0.4).unwrap(), 0.25, Profile::Quintic);
     let mut shifted = tool.clone();
     shifted.shift_center(DVec3::new(0.3, -0.2, 0.5));
@@ -197,7 +198,7 @@ fn the_gauge_does_not_matter_in_the_core() {
 }
 
 #[test]
-fn outside_the_support_there_is_nothing_and_in_the_core_only_the_tools_motion() {
+fn the_field_is_zero_outside_and_rigid_in_the_core() {
     let tool = tool(Sphere::new(0.4).unwrap(), 0.3, Profile::Quartic);
     let field = RigidField::new(&tool, TWIST);
     let mut block = VelocityBlock::REST;
