@@ -141,8 +141,8 @@ impl FieldBlock {
         core: [NO_CORE; LANES],
     };
 
-    /// Multiplies the potential P by the function `factor` and updates velocity and weight: curl(f
-    /// P) = f curl P + ∇f × P.
+    /// Multiplies the potential P by the function f = `factor` and updates velocity and weight:
+    /// curl(f P) = f curl P + ∇f × P.
     pub fn scale(&mut self, factor: &ScalarBlock) {
         for lane in 0..LANES {
             let (value, gradient) = (factor.value[lane], factor.gradient.get(lane));

@@ -60,7 +60,7 @@ pub struct Bone {
     pub parent: Option<usize>,
 }
 
-/// Pose of a jointed tool: its placement and the rotations of its bones.
+/// Placement of a jointed tool and the rotations of its bones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posture {
     /// Placement of the whole tool: current world position from the position at rest.

@@ -1,8 +1,11 @@
 //! Variation of the radius of a strip along its spine.
 //!
 //! The radius is the C² cubic spline through evenly spaced radii ρ(i), with zero slope at both
-//! ends, where round caps join it. Its slopes m(i) solve m(i−1) + 4 m(i) + m(i+1) = 3 (ρ(i+1) −
-//! ρ(i−1)).
+//! ends, where round caps join it. Its slopes m(i) between the ends solve
+//!
+//! ```text
+//! m(i−1) + 4 m(i) + m(i+1) = 3 (ρ(i+1) − ρ(i−1))
+//! ```
 
 use super::StripError;
 
