@@ -43,8 +43,8 @@ const KERNEL: f64 = 0.5;
 /// triangles has holes. Smaller: more samples.
 const SPACING: f64 = 0.75;
 
-/// Side of the cells of space in each of which one sample is kept, relative to the radius of the
-/// kernel. Larger: the average is uneven. Smaller: evaluation is slow.
+/// Side of the cells of space, relative to the radius of the kernel; one sample per cell is kept.
+/// Larger: the average is uneven. Smaller: evaluation is slow.
 const CELL: f64 = 0.2;
 
 /// Distance by which painted weights grow, relative to the radius of the kernel: one radius plus

@@ -5,7 +5,7 @@ use isochore_mesh::Aabb;
 use super::spine_instant::SpineInstant;
 use crate::fields::Tool;
 
-/// Half diagonal at which cells are no longer divided, relative to that of the whole box. The
+/// Half diagonal below which cells are not divided further, relative to that of the whole box. The
 /// result may be too large by about this. Larger: rejects strips that just fit. Smaller: slower.
 const RESOLUTION: f64 = 1.0 / 64.0;
 

@@ -84,8 +84,8 @@ fn golden_velocity_along_a_helix() {
     let field = helix_strip(ALONG).at(0.0);
     let point = DVec3::new(0.173729986128, 0.681309876668, 0.240683880873);
     let expected = DVec3::new(0.795430087475, -0.284760874097, -0.295702938751);
-    // Point and velocity are given with twelve digits; the velocity changes by up to seven times
-    // the error of the point.
+    // The data have twelve digits; the velocity changes by up to seven times the change of the
+    // point.
     assert!(field.velocity(point).distance(expected) < 4e-12, "{}", field.velocity(point));
 }
 
@@ -147,7 +147,7 @@ fn every_strip_is_the_curl_of_its_potential() {
 
 #[test]
 fn the_net_flux_is_zero() {
-    // Skips the constant splines; the deforming ones equal them at another time.
+    // Skips constant splines, which equal the deforming ones at another time.
     for (index, strip) in all_strips().iter().enumerate().filter(|(index, _)| !(1..5).contains(&(index % 9))) {
         let flux = worst_field_flux(&*strip.at(0.4), |_| f64::INFINITY, 0.7);
         assert!(flux < QUADRATURE_NOISE, "{index}: {flux:e}");
@@ -199,8 +199,7 @@ fn two_half_rings_move_material_like_a_ring() {
         let (sin, cos) = libm::sincos(TAU * f64::from(index) / 200.0);
         let radius = 1.0 + 0.17 * libm::cos(0.9 * f64::from(index));
         let point = DVec3::new(radius * cos, radius * sin, 0.17 * libm::sin(0.9 * f64::from(index)));
-        // The core moves at 1/(1 − κξ) = 1/ρ, where the closed form has constant speed. The arc
-        // length is interpolated.
+        // The core moves at 1/(1 − κξ) = 1/ρ; the closed form at 1. The arc length is interpolated.
         assert!(velocity(point).distance(DVec3::Z / radius) < 1e-9, "{index}");
     }
     let sum = |points: &PointBlock| {
@@ -298,8 +297,8 @@ fn a_section_does_not_rotate_about_the_spine() {
         // Double reflection over steps of 0.25: K h⁴/720 for a length of 4, with κ² τ³ = 0.02, plus
         // as much from the h⁴ of the spline.
         assert!((angle - jet.torsion() * length).abs() < 1e-4, "{angle}");
-        // A rotation-minimizing frame has a derivative without a part normal to both frame vector
-        // and tangent. The derivative of the interpolant is of third order in the steps of 0.25.
+        // A rotation-minimizing frame does not rotate about the tangent. The derivative of the
+        // interpolant is of third order in the steps of 0.25.
         let turn = normal.derivative.dot(station.tangent.cross(normal.vector));
         assert!(turn.abs() < 5e-3, "{turn}");
     }
