@@ -196,7 +196,7 @@ impl SpineBatch {
 /// Double reflection for all lanes, segment by segment. Returns the smallest squared length of the
 /// second reflection vector of each lane.
 ///
-/// It is compiled for several instruction sets. None of the versions fuses multiplications and
+/// It is compiled for several instruction sets. No version fuses multiplications and
 /// additions, so all give the same bits.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
 fn propagate_lanes(chords: &[VectorLanes], tangents: &[VectorLanes], references: &mut [VectorLanes]) -> Lanes {

@@ -147,7 +147,7 @@ impl SurfaceTree {
         self.leaf_of.len()
     }
 
-    /// Whether there are no triangles.
+    /// Whether the tree is empty.
     pub fn is_empty(&self) -> bool {
         self.leaf_of.is_empty()
     }

@@ -25,7 +25,7 @@ def from_trimesh(other):
     elif kind == "face":
         attributes = {"corner_colors": _rgba(visual.face_colors)[:, None].repeat(3, axis=1)}
     else:
-        # No attribute can differ across a seam, so there are no duplicates to weld.
+        # No attribute can differ across a seam, so no duplicates need welding.
         return Mesh(other.vertices, faces)
     return Mesh(other.vertices, faces, **attributes).welded()
 

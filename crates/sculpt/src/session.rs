@@ -153,7 +153,7 @@ impl Session {
         &self.surface.opened
     }
 
-    /// Undoes the last stroke and restores all bits. Returns false if there is no stroke to undo,
+    /// Undoes the last stroke and restores all bits. Returns false without a stroke to undo,
     /// or undo has forgotten it.
     ///
     /// # Errors

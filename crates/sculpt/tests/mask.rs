@@ -42,7 +42,7 @@ fn meshes() -> Meshes {
     Meshes::from([("target".to_owned(), primitives::icosphere(1.0, 3).into())])
 }
 
-/// What is wrong with the recipe, once read or once replayed.
+/// The error of a recipe, found when it is read or replayed.
 fn error(settings: &[&str]) -> String {
     let overrides: Vec<Override> = settings.iter().map(|text| Override::parse(text).unwrap()).collect();
     match Recipe::parse(TEXT, Format::Toml, &overrides) {

@@ -40,7 +40,7 @@ fn errors_name_key_and_remedy() {
         (
             "parent = \"upper\"",
             "parent = \"uper\"",
-            "stroke.0.bones.1.parent: there is no bone `uper`; did you mean `upper`?",
+            "stroke.0.bones.1.parent: unknown bone `uper`; did you mean `upper`?",
         ),
         (", parent = \"upper\"", "", "stroke.0.bones.1: has no parent, like `upper`"),
         ("parent = \"upper\"", "parent = \"lower\"", "stroke.0.bones.1.parent: leads to a cycle: lower, lower"),
@@ -51,11 +51,7 @@ fn errors_name_key_and_remedy() {
         ),
         ("name = \"lower\"", "name = \"upper\"", "stroke.0.bones.1.name: there is already a bone `upper`"),
         ("name = \"lower\"", "name = \"root\"", "stroke.0.bones.1.name: `root` names the whole tool"),
-        (
-            "lower = { rotate",
-            "lover = { rotate",
-            "stroke.0.keys.1.lover: there is no bone `lover`; did you mean `lower`?",
-        ),
+        ("lower = { rotate", "lover = { rotate", "stroke.0.keys.1.lover: unknown bone `lover`; did you mean `lower`?"),
         (
             "lower = { rotate",
             "lower = { at = [0, 0, 0], rotate",

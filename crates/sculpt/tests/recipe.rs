@@ -108,7 +108,7 @@ fn errors_name_line_key_and_remedy() {
         (", radius = 0.4", "", "line 8: tools.ball.shape.radius: missing; add it"),
         ("resolution = 64", "resolution = 1", "line 14: tools.king.shape.resolution: is 1; give at least 4"),
         ("rounding = 0.1", "rounding = 2", "line 18: tools.a.b.shape.rounding: is 2, more than"),
-        ("tool = \"ball\"", "tool = \"bal\"", "line 22: stroke.0.tool: there is no tool `bal`; did you mean `ball`?"),
+        ("tool = \"ball\"", "tool = \"bal\"", "line 22: stroke.0.tool: unknown tool `bal`; did you mean `ball`?"),
         ("{ at = [0, 0, 1.8] }, ", "", "line 23: stroke.0.keys: has 1 poses; a motion needs at least 2"),
         ("30.0]", "180]", "line 23: stroke.0.keys.1.rotate: rotates by exactly 180 degrees"),
         ("at = [0, 0, 1.8]", "at = [0, 0]", "line 23: stroke.0.keys.0.at: expected 3 entries, found 2"),

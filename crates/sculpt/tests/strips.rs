@@ -107,7 +107,7 @@ fn errors_name_line_key_and_remedy() {
             "stroke.1.spine_end: has 2 points, but `spine` has 3; give as many",
         ),
         ("\"septic\"", "\"thesis\"", "stroke.1.profile: `thesis` has a kink at the surface"),
-        ("tool = \"ball\"", "tool = \"bell\"", "stroke.2.tool: there is no tool `bell`; did you mean `ball`?"),
+        ("tool = \"ball\"", "tool = \"bell\"", "stroke.2.tool: unknown tool `bell`; did you mean `ball`?"),
         ("tool = \"ball\"", "tool = \"ball\"\nsupport = 1", "stroke.2.support: is determined by the tool; remove it"),
         (
             "tool = \"ball\"",

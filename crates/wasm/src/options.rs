@@ -147,7 +147,7 @@ pub(crate) fn keys<T: DeserializeOwned>(path: &str, data: &JsValue) -> Result<T,
 pub(crate) fn count(name: &str, number: Option<f64>, default: usize) -> Result<usize, JsError> {
     match number {
         None => Ok(default),
-        // The conversion saturates. A count beyond the address space is no limit.
+        // The conversion saturates. A count beyond the address space does not limit anything.
         Some(count) if count >= 0.0 && count.fract() == 0.0 => Ok(count as usize),
         Some(other) => Err(thrown(format!("{name} must be a nonnegative integer, not {other}"))),
     }

@@ -125,12 +125,12 @@ impl Session {
         self.session.cancel_stroke().map_err(thrown)
     }
 
-    /// Undoes the last stroke, bit for bit. Returns false if there is no stroke to undo.
+    /// Undoes the last stroke, bit for bit. Returns false without a stroke to undo.
     pub fn undo(&mut self) -> Result<bool, JsError> {
         self.session.undo().map_err(thrown)
     }
 
-    /// Redoes the last undone stroke, bit for bit. Returns false if there is no stroke to redo.
+    /// Redoes the last undone stroke, bit for bit. Returns false without a stroke to redo.
     pub fn redo(&mut self) -> Result<bool, JsError> {
         self.session.redo().map_err(thrown)
     }

@@ -33,7 +33,7 @@ const RESULTS: &str = "bench/RESULTS.md";
 const HEADLINES: [&str; 6] = [
     "A chess knight is pressed",
     "A coin is stamped",
-    "A horn is drawn",
+    "A horn is pulled",
     "A hand of four fingers and a thumb",
     "A figure turns",
     "A ball is pressed into the bunny",

@@ -126,7 +126,7 @@ const EPSILON: f64 = f32::EPSILON as f64 / 2.0;
 ///   distance, whose sum and squares are off by no more than 2ε as a distance.
 ///
 /// So the distance that selects a triangle is off by at most δ = ε (√3 (E + 1) + 12 (d + L)). The
-/// selected triangle is no more than 2δ farther away than the nearest. Its distance is then rounded
+/// selected triangle is at most 2δ farther away than the nearest. Its distance is then rounded
 /// to `f32`, which adds ε d.
 fn error_bound(bvh: &Bvh, search: &PacketSearch, farthest: f64) -> f64 {
     let scale = bvh.frame().scale();

@@ -96,7 +96,7 @@ impl SurfaceTree {
     }
 
     /// The point of the surface nearest to `point`. Ties go to the triangle with the smallest
-    /// index. `None` if there are no triangles or the point is not finite.
+    /// index. `None` if the tree is empty or the point is not finite.
     pub fn closest_point(&self, point: DVec3, corners: &impl Fn(u32) -> Option<[DVec3; 3]>) -> Option<SurfaceHit> {
         if !point.is_finite() {
             return None;

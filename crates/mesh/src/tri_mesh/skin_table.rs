@@ -42,7 +42,7 @@ pub enum SkinError {
 }
 
 impl VertexAttributes {
-    /// The skin as tables, which are empty if there is no skin.
+    /// The skin as tables, which are empty without a skin.
     pub fn skin_table(&self) -> SkinTable {
         let per_vertex = self.skin.iter().map(Vec::len).max().unwrap_or(0);
         let entries = self

@@ -29,7 +29,7 @@ pub struct TriangleSplit<C, S> {
 
 impl<C: Copy, S: TriangleSide> TriangleSplit<C, S> {
     /// Calls `push` with the corners and sides of each part, in the orientation of the triangle.
-    /// Without midpoints there are no parts.
+    /// Without midpoints, nothing is pushed.
     ///
     /// If two sides are split, the remaining quadrilateral is cut along its shorter diagonal by
     /// `distance_squared`. `inner_side` is called once for every side between two parts. If it

@@ -112,7 +112,7 @@ impl TriMesh {
     }
 }
 
-/// Flags the vertices of edges with only one triangle. `None` if there is no such edge.
+/// Flags the vertices of edges with only one triangle. `None` without such an edge.
 fn vertices_at_boundary(triangles: &[[u32; 3]], vertices: usize) -> Option<Vec<bool>> {
     // Counting sort of all edges by their smaller vertex.
     let sides = || triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).map(|(a, b)| (a.min(b), a.max(b)));

@@ -48,7 +48,7 @@ impl CsvTable {
     /// Reads the file at `path`. Every row has the same number of columns, one of
     /// `allowed_columns`.
     ///
-    /// The first row is a header if none of its cells is a number. Empty lines and lines that begin
+    /// The first row is a header if it contains only text. Empty lines and lines that begin
     /// with `#` are skipped.
     ///
     /// # Errors

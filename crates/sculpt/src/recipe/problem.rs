@@ -172,7 +172,7 @@ pub enum NumberProblem {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ReferenceProblem {
     /// The recipe has no tool with this name.
-    #[error("there is no tool `{name}`{suggestion}")]
+    #[error("unknown tool `{name}`{suggestion}")]
     UnknownTool {
         /// The name.
         name: String,
@@ -180,7 +180,7 @@ pub enum ReferenceProblem {
         suggestion: Suggestion,
     },
     /// The stroke has no bone with this name.
-    #[error("there is no bone `{name}`{suggestion}")]
+    #[error("unknown bone `{name}`{suggestion}")]
     UnknownBone {
         /// The name.
         name: String,

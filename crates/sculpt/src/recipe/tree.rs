@@ -61,7 +61,7 @@ impl Override {
     /// Parses `KEY=VALUE`.
     ///
     /// # Errors
-    /// There is no `=`, or the key or the value is malformed.
+    /// The `=` is missing, or the key or the value is malformed.
     pub fn parse(text: &str) -> Result<Self, RecipeError<SyntaxProblem>> {
         let location = Location::Override(text.to_owned());
         let wrong = |message: &str| malformed(message, location.clone());

@@ -199,7 +199,7 @@ impl Session {
     }
 
     /// For each vertex of the mesh as opened, the vertex that represents it now: itself, or the
-    /// vertex that collapses have merged it into, which may be an inserted one. None of these is
+    /// vertex that collapses have merged it into, which may be an inserted one. No listed vertex is
     /// removed. Takes time proportional to the number of vertices and of collapses.
     ///
     /// [`origin_of`](Self::origin_of) maps in the other direction, from render vertices to the mesh

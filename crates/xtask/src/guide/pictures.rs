@@ -19,7 +19,7 @@ use crate::{
 const CHOICES: [&str; 5] = ["tool", "support", "profile", "step", "refinement"];
 
 /// Recipes of `data/recipes` whose previews the documents show as they are.
-const PREVIEWS: [&str; 3] = ["coin", "strip_along", "waist"];
+const PREVIEWS: [&str; 2] = ["coin", "strip_along"];
 
 /// Height of the strip with captions below the pictures of a preview, in pixels.
 const CAPTIONS: usize = 48;

@@ -75,7 +75,7 @@ fn prose_of(source: Source, line: &str) -> Vec<(&str, bool)> {
 /// Splits a line of code at a comment that follows it; a mark inside quotes, as in an address, starts none.
 fn split_at_comment<'a>(line: &'a str, mark: &str) -> (&'a str, Option<&'a str>) {
     let starts = line.match_indices(mark).map(|(start, _)| start);
-    let outside_quotes = |&start: &usize| line[..start].matches('"').count() % 2 == 0;
+    let outside_quotes = |&start: &usize| line[..start].matches('"').count().is_multiple_of(2);
     match starts.into_iter().find(outside_quotes) {
         Some(start) => (&line[..start], Some(&line[start..])),
         None => (line, None),

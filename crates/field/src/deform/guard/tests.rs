@@ -19,7 +19,7 @@ fn press(step: f64) -> Stroke {
 fn step_of(stroke: &Stroke) -> f64 {
     match stroke {
         Stroke::Move(motion) => motion.step(),
-        other => panic!("{other:?} is no move"),
+        other => panic!("{other:?} is not a move"),
     }
 }
 

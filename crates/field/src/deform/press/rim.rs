@@ -6,6 +6,7 @@
 //! normal of the contact.
 
 use glam::DVec3;
+use petgraph::unionfind::UnionFind;
 
 use super::{contact::Near, step_motion::StepMotion};
 
@@ -65,22 +66,22 @@ impl Rim {
         let is_eligible: Vec<bool> = (0..normals.len())
             .map(|index| is_contact(index) || (near.distances[index] < support && facing(index) > 0.0))
             .collect();
-        let mut components = Components::new(normals.len());
+        let mut components = UnionFind::<u32>::new(normals.len());
         for triangle in around() {
             let [a, b, c] = near_indices(triangle);
             for (a, b) in [(a, b), (b, c), (c, a)] {
                 if a != NONE && b != NONE && is_eligible[a as usize] && is_eligible[b as usize] {
-                    components.join(a, b);
+                    components.union(a, b);
                 }
             }
         }
         let mut is_struck = vec![false; normals.len()];
         for index in (0..normals.len()).filter(|&index| is_contact(index)) {
-            is_struck[components.root(index as u32) as usize] = true;
+            is_struck[components.find_mut(index as u32) as usize] = true;
         }
         let mut directions = vec![DVec3::ZERO; positions.len()];
         for (index, &vertex) in near.vertices.iter().enumerate() {
-            if is_eligible[index] && is_struck[components.root(index as u32) as usize] {
+            if is_eligible[index] && is_struck[components.find_mut(index as u32) as usize] {
                 let weight = bump(near.distances[index] / support) * fade(facing(index) / FACING);
                 directions[vertex as usize] = weight * normals[index];
             }
@@ -99,26 +100,4 @@ fn bump(u: f64) -> f64 {
 fn fade(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x * x * (3.0 - 2.0 * x)
-}
-
-/// Disjoint sets (union-find); the root of a set is its smallest member.
-struct Components(Vec<u32>);
-
-impl Components {
-    fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    fn root(&mut self, mut member: u32) -> u32 {
-        while self.0[member as usize] != member {
-            self.0[member as usize] = self.0[self.0[member as usize] as usize];
-            member = self.0[member as usize];
-        }
-        member
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }

@@ -207,7 +207,7 @@ fn read_usual_corners(mut rest: &[u8], vertices: &mut Vec<u32>) -> Option<[usize
     rest.is_empty().then_some(found)
 }
 
-/// The number at the start of `bytes` and the bytes after it. Zero if there are no digits.
+/// The number at the start of `bytes` and the bytes after it. Zero without digits.
 fn split_number(bytes: &[u8]) -> Option<(u32, &[u8])> {
     let (mut number, mut length) = (0, 0);
     while let Some(digit @ 0..=9) = bytes.get(length).map(|byte| byte.wrapping_sub(b'0')) {

@@ -117,7 +117,7 @@ impl<'a> Records<'a> {
     }
 }
 
-/// Values by vertex. `None` if two corners at a vertex differ, or if there are no values.
+/// Values by vertex. `None` if two corners at a vertex differ, or without values.
 fn by_vertex<T: Copy + Default + PartialEq>(mesh: &TriMesh, corners: &[[T; 3]]) -> Option<Vec<T>> {
     if corners.is_empty() {
         return None;
