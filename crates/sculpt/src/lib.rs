@@ -5,7 +5,7 @@
 //! - A [`Recipe`] describes a deformation: a target, tools, strokes and outputs. It is plain data
 //!   that is written and read without loss.
 //! - A [`Scene`] holds the objects that a recipe describes: the target's mesh, tools and strokes.
-//! - [`replay`] deforms the target of a recipe, and a [`Report`] measures the result on the mesh as
+//! - [`replay()`] deforms the target of a recipe, and a [`Report`] measures the result on the mesh as
 //!   written.
 //! - A [`PointFlow`] advects points that do not form a mesh and need not fit into memory.
 //! - A [`session`] deforms a mesh stroke by stroke for an interactive host. Its log is a recipe.

@@ -38,7 +38,7 @@ fn a_replay_of_poses_gives_the_same_bits() {
     // The negated quaternion is the same rotation, and one of any length has a direction.
     let mut poses = arc(0.0, 9);
     poses[3].rotation = -poses[3].rotation;
-    poses[5].rotation = poses[5].rotation * 3.0;
+    poses[5].rotation *= 3.0;
     make(&mut session, &rod(), &refined(0.1), &poses);
     let mut again = ball();
     move_along(&mut again, &logged_keys(&session));
