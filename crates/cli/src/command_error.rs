@@ -11,7 +11,7 @@ use isochore_mesh::{
 };
 use isochore_sculpt::{
     ReplayError, StreamProblem,
-    files::LoadError,
+    files::{CsvError, LoadError},
     recipe::{Location, RecipeError},
 };
 
@@ -28,6 +28,8 @@ pub(crate) enum CommandError {
     Stream { path: PathBuf, source: RecipeError<StreamProblem> },
     #[error(transparent)]
     Load(#[from] LoadError),
+    #[error(transparent)]
+    Table(#[from] CsvError),
     #[error(transparent)]
     ReadMesh(#[from] ReadError),
     #[error(transparent)]
@@ -95,6 +97,7 @@ impl CommandError {
             | Self::Stream { path, .. }
             | Self::File { path, .. } => Some(path.as_path()),
             Self::Load(error) => Some(error.path()),
+            Self::Table(error) => Some(error.path()),
             Self::ReadMesh(
                 ReadError::UnknownFormat { path } | ReadError::Io { path, .. } | ReadError::Parse { path, .. },
             ) => Some(path.as_path()),

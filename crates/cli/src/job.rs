@@ -52,9 +52,7 @@ impl Job {
         let text = std::str::from_utf8(&bytes).map_err(|error| {
             CommandError::file(path, format!("the recipe is not valid UTF-8 at byte {}", error.valid_up_to()))
         })?;
-        let is_json = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
-        let format = if is_json { Format::Json } else { Format::Toml };
-        let recipe = Recipe::parse(text, format, &overrides).map_err(invalid)?;
+        let recipe = Recipe::parse(text, Format::of_path(path), &overrides).map_err(invalid)?;
         let resolve = |name: &Option<String>| name.as_ref().map(|name| files::beside(path, name));
         let outputs = Outputs {
             mesh: resolve(&recipe.output.mesh),

@@ -18,7 +18,6 @@ pub mod arguments;
 mod command_error;
 mod completions;
 mod console;
-mod csv_table;
 mod demo;
 mod distance;
 mod frames;

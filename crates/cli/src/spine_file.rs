@@ -5,11 +5,11 @@ use isochore_curve::{
     Frame, FrameError, HermiteError, MoebiusSpline, PhSpline, Spine, SpineError, TangentError, TangentRule, Tilt,
     close_frames, closing_angle, rotation_minimizing_frames, spread,
 };
+use isochore_sculpt::files::{CsvError, CsvTable};
 use serde::Serialize;
 
 use crate::{
     command_error::CommandError,
-    csv_table::CsvTable,
     spine_options::{FrameOptions, Rotation, SpineOptions, TangentSource},
 };
 
@@ -50,22 +50,22 @@ impl SpineFile {
     pub(crate) fn read(options: &SpineOptions) -> Result<Self, CommandError> {
         let table = CsvTable::read(&options.curve, &[3, 6])?;
         let has_tangents = table.columns() == 6;
-        let points = table.rows.iter().map(|row| DVec3::from_slice(&row[..3])).collect();
+        let points = table.rows().iter().map(|row| DVec3::from_slice(&row[..3])).collect();
         let rule = match options.tangents {
             TangentSource::Circle => Some(TangentRule::Circle),
             TangentSource::Stencil => Some(TangentRule::Automatic),
             TangentSource::Automatic if !has_tangents => Some(TangentRule::Automatic),
             TangentSource::Columns if !has_tangents => {
-                return Err(table.error_in_file(
-                    "the file has three columns and no tangents; add tx,ty,tz, or use --tangents stencil or circle",
-                ));
+                let problem =
+                    "the file has three columns and no tangents; add tx,ty,tz, or use --tangents stencil or circle";
+                return Err(table.error_in_file(problem).into());
             }
             TangentSource::Automatic | TangentSource::Columns => None,
         };
         let spine = match rule {
             Some(rule) => Spine::from_points(points, options.is_closed, rule),
             None => {
-                let tangents = table.rows.iter().map(|row| DVec3::from_slice(&row[3..])).collect();
+                let tangents = table.rows().iter().map(|row| DVec3::from_slice(&row[3..])).collect();
                 Spine::new(points, tangents, options.is_closed)
             }
         };
@@ -129,29 +129,32 @@ impl SpineFile {
     fn frame_error(&self, error: FrameError) -> CommandError {
         match error {
             FrameError::Reference => CommandError::Usage(format!("--r0: {error}")),
-            FrameError::DegenerateSegment { segment } => self.table.error_between(
+            FrameError::DegenerateSegment { segment } => self.segment_error(
                 segment,
-                self.next(segment),
                 "the tangents are reversed, the curve has a cusp, or the rows are too far apart",
             ),
             FrameError::OppositeTangents { segment } => {
-                self.table.error_between(segment, self.next(segment), "the tangents are opposite; add a row between")
+                self.segment_error(segment, "the tangents are opposite; add a row between")
             }
         }
     }
 
     fn hermite_error(&self, error: &HermiteError) -> CommandError {
-        let problem = format!("{}; more rows may help", error.reason);
-        self.table.error_between(error.segment, self.next(error.segment), problem)
+        self.segment_error(error.segment, format!("{}; more rows may help", error.reason))
+    }
+
+    /// Error about the two rows at the ends of a segment.
+    fn segment_error(&self, segment: usize, problem: impl std::fmt::Display) -> CommandError {
+        self.table.error_between(segment, self.next(segment), problem).into()
     }
 
     fn next(&self, segment: usize) -> usize {
-        (segment + 1) % self.table.rows.len()
+        (segment + 1) % self.table.rows().len()
     }
 }
 
 /// Translates indices of points into rows of the file.
-fn spine_error(table: &CsvTable, error: SpineError) -> CommandError {
+fn spine_error(table: &CsvTable, error: SpineError) -> CsvError {
     match error {
         SpineError::TooFewPoints { .. } | SpineError::TangentCount { .. } => table.error_in_file(error),
         SpineError::PointNotFinite { index } => table.error(index, "a coordinate is too large"),

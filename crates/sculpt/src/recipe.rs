@@ -21,7 +21,7 @@ mod transform;
 mod tree;
 mod validate;
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::Path};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -241,6 +241,21 @@ impl Format {
     /// ```
     pub fn of_text(text: &str) -> Self {
         if text.trim_start().starts_with('{') { Self::Json } else { Self::Toml }
+    }
+
+    /// The format of the file at `path`: JSON if its extension is `json`.
+    ///
+    /// ```
+    /// use std::path::Path;
+    ///
+    /// use isochore_sculpt::recipe::Format;
+    ///
+    /// assert_eq!(Format::of_path(Path::new("press.JSON")), Format::Json);
+    /// assert_eq!(Format::of_path(Path::new("press.toml")), Format::Toml);
+    /// ```
+    pub fn of_path(path: &Path) -> Self {
+        let is_json = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+        if is_json { Self::Json } else { Self::Toml }
     }
 }
 

@@ -2,8 +2,9 @@
 
 use glam::{DVec2, DVec3};
 use isochore_curve::RationalCrossSection;
+use isochore_sculpt::files::CsvTable;
 
-use crate::{arguments::SweepArguments, command_error::CommandError, csv_table::CsvTable};
+use crate::{arguments::SweepArguments, command_error::CommandError};
 
 /// Number of points of a Bézier outline on a mesh.
 const BEZIER_POINTS: usize = 33;
@@ -26,11 +27,11 @@ impl CrossSection {
     pub(super) fn read(arguments: &SweepArguments) -> Result<Self, CommandError> {
         let columns: &[usize] = if arguments.bezier { &[2, 3] } else { &[2] };
         let table = CsvTable::read(&arguments.profile, columns)?;
-        let mut rows = Vec::with_capacity(table.rows.len());
-        for (index, row) in table.rows.iter().enumerate() {
+        let mut rows = Vec::with_capacity(table.rows().len());
+        for (index, row) in table.rows().iter().enumerate() {
             let weight = row.get(2).copied().unwrap_or(1.0);
             if weight <= 0.0 {
-                return Err(table.error(index, "the weight must be above 0"));
+                return Err(table.error(index, "the weight must be above 0").into());
             }
             rows.push((DVec2::new(row[0], row[1]) * weight).extend(weight));
         }
@@ -38,11 +39,11 @@ impl CrossSection {
         let least = if is_closed { 3 } else { 2 };
         if rows.len() < least {
             let problem = format!("the cross-section needs at least {least} rows, not {}", rows.len());
-            return Err(table.error_in_file(problem));
+            return Err(table.error_in_file(problem).into());
         }
         if is_closed && rows[0] == rows[rows.len() - 1] {
             let problem = "the row repeats the first point; remove it, because --profile-closed connects the ends";
-            return Err(table.error(rows.len() - 1, problem));
+            return Err(table.error(rows.len() - 1, problem).into());
         }
         Ok(Self { rows, is_bezier: arguments.bezier, is_closed })
     }
