@@ -20,7 +20,10 @@ pub struct Replay {
 /// Deforms the target of `recipe`.
 ///
 /// `meshes` holds the mesh files of the recipe [by name](Recipe::mesh_names). Points must have
-/// [replaced](Recipe::inline_curve) its curve files.
+/// [replaced](Recipe::inline_curve) its curve files. A tool whose shape is
+/// [`ToolShape::Host`](crate::recipe::ToolShape::Host) is rejected, because a recipe does not
+/// contain it: replay such a log [in a session](crate::session::Session::replay), which accepts
+/// tools of the host.
 ///
 /// # Errors
 /// [`ReplayError`], with the key of the recipe at fault.

@@ -76,7 +76,7 @@ use isochore_field as field;
 use isochore_mesh::{Aabb, ClosedMesh, CompensatedSum, NONE, TriMesh};
 
 pub use buffers::{Changes, DirtyRange, RenderBuffers};
-pub use error::{OpenError, SessionError};
+pub use error::{HostToolError, OpenError, SessionError};
 pub use export::Exported;
 pub use log::SessionReplayError;
 pub use options::{InteractiveRefinement, NormalWeights, SessionOptions, StrokeOptions};

@@ -38,6 +38,20 @@ pub enum OpenError {
     Mask(#[from] RecipeError<MaskProblem>),
 }
 
+/// Errors of [`SessionTool::from_tool`](super::SessionTool::from_tool).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum HostToolError {
+    /// The bounds of the tool's distance are infinite or NaN.
+    #[error(
+        "tools.{name}.shape: the bounds of the distance are not finite; intersect the shape with a box around the \
+         model, and return that box as the bounds"
+    )]
+    Unbounded {
+        /// Name of the tool.
+        name: String,
+    },
+}
+
 /// Errors of a session. A failed call leaves the session unchanged, with one exception: a move that
 /// fails with [`Overflow`](Self::Overflow) may have split long edges. This moves no vertex, and the
 /// receipt of the stroke includes it.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::{Cancelled, Monitor};
 
-use super::{Session, SessionError, SessionTool, StrokeOptions, StrokeReceipt, Supplies};
+use super::{HostToolError, Session, SessionError, SessionTool, StrokeOptions, StrokeReceipt, Supplies};
 use crate::{
     recipe::{Integrate, Key, Move, Recipe, Refine, Stroke, ToolShape, Volume},
     scene::SceneError,
@@ -35,6 +35,9 @@ pub enum SessionReplayError {
         /// Name of the tool in the recipe.
         name: String,
     },
+    /// A tool that the host supplied is not usable in a session.
+    #[error(transparent)]
+    HostTool(#[from] HostToolError),
     /// The stroke is not a move of a tool.
     #[error("stroke.{index} is of kind `{kind}`; a session replays only strokes of kind `move`")]
     Kind {
@@ -134,7 +137,8 @@ impl Session {
 
     /// Performs the strokes of `recipe`, all of which must be moves. Each becomes a stroke that can
     /// be undone. The target, mask, time step and refinement of the recipe are ignored; the
-    /// session's own are used.
+    /// session's own are used. Tools whose shape is [`ToolShape::Host`] come from
+    /// [`supplies`](Supplies::tools).
     ///
     /// # Errors
     /// [`SessionReplayError`]. The strokes before the failing one have been performed.
@@ -203,7 +207,7 @@ fn tool_of(
         return Ok(tool.map_err(SceneError::from)?);
     }
     let tool = supplies.tools.get(name).ok_or_else(|| SessionReplayError::MissingTool { name: name.to_owned() })?;
-    Ok(SessionTool::from_tool(name, Arc::clone(tool)))
+    Ok(SessionTool::from_tool(name, Arc::clone(tool))?)
 }
 
 /// Reason why a replayed move was abandoned.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use isochore_field as field;
 use isochore_mesh::Monitor;
 
+use super::HostToolError;
 use crate::{
     recipe::{self, HostShape, ToolShape},
     scene::{BuildToolError, Meshes, build_tool},
@@ -58,8 +59,11 @@ impl SessionTool {
     ///
     /// The log names the tool and records its support, but a recipe cannot describe its shape: the
     /// entry's shape is [`ToolShape::Host`]. To replay such a log, the host supplies the tool again
-    /// in [`Supplies::tools`](super::Supplies::tools). The bounds of its distance must be
-    /// finite.
+    /// in [`Supplies::tools`](super::Supplies::tools).
+    ///
+    /// # Errors
+    /// [`HostToolError::Unbounded`] if the bounds of the tool's distance are not finite: a session
+    /// searches the surface within these bounds.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -90,7 +94,7 @@ impl SessionTool {
     /// }
     ///
     /// let tool = Arc::new(Tool::new(Arc::new(Ball), 0.3, Profile::Quintic)?);
-    /// let brush = Arc::new(SessionTool::from_tool("ball", Arc::clone(&tool)));
+    /// let brush = Arc::new(SessionTool::from_tool("ball", Arc::clone(&tool))?);
     /// let mut session = Session::open(icosphere(1.0, 3), SessionOptions::default())?;
     /// session.begin_stroke(&brush, StrokeOptions::default())?;
     /// session.move_to(&Pose::at(DVec3::Z), 0.0)?;
@@ -106,15 +110,19 @@ impl SessionTool {
     /// assert_eq!(again.positions(), session.positions());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn from_tool(name: &str, tool: impl Into<Arc<field::Tool>>) -> Self {
+    pub fn from_tool(name: &str, tool: impl Into<Arc<field::Tool>>) -> Result<Self, HostToolError> {
         let tool = tool.into();
+        // Corners at infinity would become NaN in a rotated pose.
+        if !tool.distance().bounds().size().is_finite() {
+            return Err(HostToolError::Unbounded { name: name.to_owned() });
+        }
         let description = recipe::Tool {
             shape: ToolShape::Host(HostShape {}),
             support: tool.support(),
             profile: profile(tool.profile()),
             free_form: 0.0,
         };
-        Self { name: name.to_owned(), description, tool, warnings: Vec::new() }
+        Ok(Self { name: name.to_owned(), description, tool, warnings: Vec::new() })
     }
 
     /// Name in the log.

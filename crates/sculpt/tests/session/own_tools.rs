@@ -1,9 +1,9 @@
 use isochore_field::{Profile, Tool};
-use isochore_mesh::{Aabb, Distance, DistanceBlock, LANES, PointBlock};
+use isochore_mesh::{Aabb, Distance, DistanceBlock, HalfSpace, LANES, PointBlock};
 use isochore_sculpt::{
     Recipe, ReplayError, recipe,
     recipe::Format,
-    session::{SessionReplayError, Supplies},
+    session::{HostToolError, SessionReplayError, Supplies},
 };
 
 use super::*;
@@ -44,7 +44,7 @@ fn own_tool() -> Arc<Tool> {
 #[test]
 fn a_tool_of_the_host_sculpts_and_undo_restores_the_bits() {
     let mut session = ball();
-    let tool = Arc::new(SessionTool::from_tool("own", own_tool()));
+    let tool = Arc::new(SessionTool::from_tool("own", own_tool()).unwrap());
     let opened = snapshot(&session);
     make(&mut session, &tool, &refined(0.08), &arc(0.0, 9));
     assert_sound(&session);
@@ -64,7 +64,7 @@ fn a_tool_of_the_host_moves_vertices_to_the_bits_of_the_same_tool_of_a_recipe() 
     let shape = ToolShape::Sphere(Sphere { radius: 0.2 });
     let described = recipe::Tool { shape, support: 0.25, profile: recipe::Profile::Contact, free_form: 0.0 };
     let described = SessionTool::new("ball", described, &Meshes::new(), &NoProgress).unwrap();
-    let own = SessionTool::from_tool("ball", Arc::clone(described.tool()));
+    let own = SessionTool::from_tool("ball", Arc::clone(described.tool())).unwrap();
     let [described, own] = [described, own].map(|tool| {
         let mut session = ball();
         make(&mut session, &Arc::new(tool), &refined(0.1), &arc(0.0, 9));
@@ -77,7 +77,7 @@ fn a_tool_of_the_host_moves_vertices_to_the_bits_of_the_same_tool_of_a_recipe() 
 fn the_log_names_a_tool_of_the_host_and_replays_once_it_is_supplied() {
     let mut session = ball();
     let (tool, other) = (own_tool(), own_tool());
-    let named = |tool: &Arc<Tool>| Arc::new(SessionTool::from_tool("own", Arc::clone(tool)));
+    let named = |tool: &Arc<Tool>| Arc::new(SessionTool::from_tool("own", Arc::clone(tool)).unwrap());
     for tool in [named(&tool), named(&other), named(&tool), brush()] {
         make(&mut session, &tool, &UNREFINED, &arc(0.3, 6));
     }
@@ -105,11 +105,35 @@ fn the_log_names_a_tool_of_the_host_and_replays_once_it_is_supplied() {
 #[test]
 fn a_recipe_alone_does_not_build_a_tool_of_the_host() {
     let mut session = ball();
-    make(&mut session, &Arc::new(SessionTool::from_tool("own", own_tool())), &UNREFINED, &arc(0.0, 5));
+    make(&mut session, &Arc::new(SessionTool::from_tool("own", own_tool()).unwrap()), &UNREFINED, &arc(0.0, 5));
     let log = session.log();
     let meshes = Meshes::from([("target".to_owned(), Arc::new(icosphere(1.0, 3)))]);
     let error: ReplayError = isochore_sculpt::replay(&log, &meshes, &NoProgress).unwrap_err();
     assert_eq!(error.key().as_deref(), Some("tools.own.shape"));
     let error = SessionTool::new("own", log.tools["own"].clone(), &Meshes::new(), &NoProgress).unwrap_err();
     assert!(error.to_string().contains("supplies the tool"), "{error}");
+}
+
+#[test]
+fn rejects_a_tool_of_the_host_without_finite_bounds() {
+    let half_space = HalfSpace::new(DVec3::ZERO, DVec3::Z).unwrap();
+    let unbounded = Arc::new(Tool::new(Arc::new(half_space), 0.25, Profile::Contact).unwrap());
+    let error = SessionTool::from_tool("own", Arc::clone(&unbounded)).unwrap_err();
+    assert_eq!(error, HostToolError::Unbounded { name: "own".to_owned() });
+    let message = error.to_string();
+    assert!(
+        message.starts_with("tools.own.shape: ") && message.contains("intersect the shape with a box"),
+        "{message}"
+    );
+
+    // A replay rejects it as well.
+    let mut session = ball();
+    make(&mut session, &Arc::new(SessionTool::from_tool("own", own_tool()).unwrap()), &UNREFINED, &arc(0.0, 5));
+    let mut supplies = Supplies::default();
+    supplies.tools.insert("own".to_owned(), unbounded);
+    let error = ball().replay(&session.log(), &supplies, &UNREFINED, &NoProgress).unwrap_err();
+    assert!(
+        matches!(&error, SessionReplayError::HostTool(HostToolError::Unbounded { name }) if name == "own"),
+        "{error}"
+    );
 }
