@@ -5,6 +5,7 @@ use std::{
     ffi::{CString, c_char},
     fmt::Display,
     panic::{AssertUnwindSafe, catch_unwind},
+    path::Path,
 };
 
 use isochore_mesh::{
@@ -53,6 +54,11 @@ impl Failure {
 
     pub(crate) fn argument(message: impl ToString) -> Self {
         Self::new(Status::Argument, message)
+    }
+
+    /// Adds the file at fault to the message.
+    pub(crate) fn in_file(self, path: &Path) -> Self {
+        Self { message: format!("{}: {}", path.display(), self.message), ..self }
     }
 }
 

@@ -29,7 +29,7 @@ pub use mesh::{
     isochore_mesh_vertex_count, isochore_mesh_volume, isochore_mesh_write,
 };
 pub use monitor::Progress;
-pub use replay::{NamedMesh, isochore_run, isochore_run_points};
+pub use replay::{NamedMesh, isochore_run, isochore_run_file, isochore_run_points};
 pub use session::{
     Arrow, Buffer, Buffers, History, Hit, LockSkipped, MoveReceipt, Origin, Range, Session, SessionOptions,
     StrokeOptions, StrokeReceipt, isochore_session_begin_stroke, isochore_session_buffers,

@@ -2,6 +2,8 @@
 
 use std::{
     ffi::{c_char, c_void},
+    fs,
+    path::Path,
     sync::Arc,
 };
 
@@ -33,7 +35,8 @@ pub struct NamedMesh {
 
 /// Deforms the target of a recipe. `recipe` is the text of a TOML document, or of a JSON document
 /// if it begins with a brace. `meshes` provides the meshes that the recipe names; no file is read.
-/// The recipe must contain the points of spines and the weights of masks itself.
+/// The recipe must contain the points of spines and the weights of masks itself. To let a recipe
+/// read its files, use `isochore_run_file`.
 ///
 /// Stores the deformed mesh in `mesh`. If `report` is not NULL, stores the report as a JSON string;
 /// free it with `isochore_text_free`. `progress` may be NULL.
@@ -62,18 +65,86 @@ pub unsafe extern "C" fn isochore_run(
         let mut recipe = Recipe::parse(recipe_text, Format::of_text(recipe_text), &[])?;
         // SAFETY: the caller guarantees it.
         let meshes = load(&mut recipe, TargetMesh::Required, unsafe { named(named_meshes) }?)?;
-        let watcher = Watcher::new(progress, context);
-        let replay = replay(&recipe, &meshes, &watcher)?;
+        let loaded = LoadedRecipe { recipe, text: recipe_text, meshes };
+        // SAFETY: the caller guarantees it.
+        unsafe { loaded.run(&Watcher::new(progress, context), mesh, report) }
+    })
+}
+
+/// Deforms the target of the recipe in the file at `path`: JSON if its extension is `json`, TOML
+/// otherwise. Reads the meshes, the CSV files of spines and the CSV file of mask weights that the
+/// recipe names; their names are relative to the folder of the recipe. Writes no file, so the
+/// `output` of the recipe has no effect.
+///
+/// Stores the deformed mesh in `mesh`. If `report` is not NULL, stores the report as a JSON string;
+/// free it with `isochore_text_free`. `progress` may be NULL.
+///
+/// Returns `ISOCHORE_STATUS_FILE` if a file cannot be read, `ISOCHORE_STATUS_RECIPE` if the recipe
+/// or the contents of a file that it names are invalid, `ISOCHORE_STATUS_MESH` if the result cannot
+/// be measured, and `ISOCHORE_STATUS_CANCELLED` if `progress` returned false. The message names the
+/// file at fault and the key that names it.
+///
+/// Preconditions: `path` is a string. `mesh` is writable. `report` is NULL or writable. Free the
+/// mesh with `isochore_mesh_free`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn isochore_run_file(
+    path: *const c_char,
+    progress: Progress,
+    context: *mut c_void,
+    mesh: *mut *mut Mesh,
+    report: *mut *mut c_char,
+) -> Status {
+    guarded(|| {
+        // SAFETY: the caller guarantees it.
+        let path = Path::new(unsafe { text("path", path) }?);
+        if mesh.is_null() {
+            return Err(Failure::argument("mesh is NULL"));
+        }
+        let text = read_text(path).map_err(|failure| failure.in_file(path))?;
+        let recipe = Recipe::parse(&text, Format::of_path(path), &[]);
+        let mut recipe = recipe.map_err(|error| Failure::from(error).in_file(path))?;
+        let resolve = |name: &str| Some(NamedFile::Path(files::beside(path, name)));
+        let meshes = files::load(&mut recipe, TargetMesh::Required, &resolve)?;
+        let loaded = LoadedRecipe { recipe, text: &text, meshes };
+        // SAFETY: the caller guarantees it.
+        unsafe { loaded.run(&Watcher::new(progress, context), mesh, report) }.map_err(|failure| failure.in_file(path))
+    })
+}
+
+/// Reads a recipe.
+fn read_text(path: &Path) -> Result<String, Failure> {
+    let bytes = fs::read(path).map_err(|error| Failure::new(Status::File, format!("cannot read: {error}")))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        Failure::new(Status::Recipe, format!("the recipe is not valid UTF-8 at byte {valid}"))
+    })
+}
+
+/// A recipe whose files are loaded.
+struct LoadedRecipe<'a> {
+    recipe: Recipe,
+    /// The recipe as given; the report identifies it.
+    text: &'a str,
+    meshes: Meshes,
+}
+
+impl LoadedRecipe<'_> {
+    /// Deforms the target. Stores the deformed mesh and, unless `report` is NULL, the report.
+    ///
+    /// # Safety
+    /// `mesh` is writable. `report` is NULL or writable.
+    unsafe fn run(&self, watcher: &Watcher, mesh: *mut *mut Mesh, report: *mut *mut c_char) -> Result<(), Failure> {
+        let replay = replay(&self.recipe, &self.meshes, watcher)?;
         if !report.is_null() {
-            let source = Source { text: recipe_text.as_bytes(), overrides: &[] };
-            let json = Report::new(&recipe, source, &replay, &replay.deformed.mesh, &watcher)?;
+            let source = Source { text: self.text.as_bytes(), overrides: &[] };
+            let json = Report::new(&self.recipe, source, &replay, &replay.deformed.mesh, watcher)?;
             let json = serde_json::to_string(&json).map_err(Failure::argument)?;
             // SAFETY: the caller guarantees it.
             unsafe { hand_over_text("report", report, &json) }?;
         }
         // SAFETY: the caller guarantees it.
         unsafe { hand_over("mesh", mesh, Mesh { mesh: replay.deformed.mesh.into() }) }
-    })
+    }
 }
 
 /// Advects points along the strokes of a recipe, in place. `points` holds x, y, z of each point in

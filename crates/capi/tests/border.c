@@ -1,11 +1,15 @@
 /* Tests of the C interface: arrays in and out, error messages, cancellation. The argument is the path of a file to write. */
 
+/* For mkdtemp. */
+#define _XOPEN_SOURCE 700
+
 #include <isochore.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define CHECK(condition)                                                                       \
     do {                                                                                       \
@@ -93,6 +97,79 @@ static void recipes(void) {
     CHECK(isochore_run(TWIST, &named, 1, stop, &updates, &twisted, NULL) == ISOCHORE_STATUS_CANCELLED);
     CHECK(updates > 0 && twisted == NULL);
     isochore_mesh_free(mesh);
+}
+
+/* A recipe that moves material along a spine, except at vertex 1. The arguments are the target, the spine and the mask. */
+#define MASKED_STRIP                                                                                                        \
+    "{ \"recipe\": 1, \"target\": { \"mesh\": \"%s\" }, \"mask\": { \"vertices\": %s, \"fade\": 0.1 }, \"refine\": { \"enabled\": false }," \
+    " \"output\": { \"mesh\": \"output.obj\" }, \"stroke\": [ { \"kind\": \"strip\", \"mode\": \"along\", \"spine\": %s, \"radius\": 0.2, \"support\": 0.3,"             \
+    " \"distance\": 0.2 } ] }"
+
+/* Path of the file `name` in `folder`, in a buffer that the next call overwrites. */
+static const char *in(const char *folder, const char *name) {
+    static char path[4096];
+    CHECK(snprintf(path, sizeof path, "%s/%s", folder, name) < (int)sizeof path);
+    return path;
+}
+
+static void write_text(const char *path, const char *content) {
+    FILE *file = fopen(path, "w");
+    CHECK(file && fputs(content, file) >= 0 && fclose(file) == 0);
+}
+
+/* Runs a recipe file that names a mesh, a spine and weights in its folder. The result equals that of the same recipe with the
+   contents of the files. Messages about faulty files name the file and the key. */
+static void recipe_files(void) {
+    char folder[] = "/tmp/isochore-XXXXXX", inlined[1024], named_files[1024];
+    CHECK(mkdtemp(folder));
+    snprintf(named_files, sizeof named_files, MASKED_STRIP, "target.obj", "\"weights.csv\"", "\"spine.csv\"");
+    snprintf(inlined, sizeof inlined, MASKED_STRIP, "target.obj", "[0, 1, 0, 0]", "[[-1, 0, 0], [1, 0, 0]]");
+    IsochoreMesh *target = tetrahedron(), *expected = NULL, *deformed = NULL;
+    IsochoreNamedMesh named = {"target.obj", target};
+    CHECK(isochore_run(inlined, &named, 1, NULL, NULL, &expected, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_mesh_write(target, in(folder, "target.obj")) == ISOCHORE_STATUS_OK);
+    write_text(in(folder, "recipe.json"), named_files);
+    write_text(in(folder, "weights.csv"), "weight\n0\n1\n0\n0\n");
+
+    CHECK(isochore_run_file(in(folder, "recipe.json"), NULL, NULL, &deformed, NULL) == ISOCHORE_STATUS_FILE);
+    CHECK(deformed == NULL && strstr(isochore_last_error(), "stroke.0.spine: "));
+    CHECK(strstr(isochore_last_error(), in(folder, "spine.csv")));
+    write_text(in(folder, "spine.csv"), "x,y,z\n-1,0,0\n1,0\n");
+    CHECK(isochore_run_file(in(folder, "recipe.json"), NULL, NULL, &deformed, NULL) == ISOCHORE_STATUS_RECIPE);
+    CHECK(strstr(isochore_last_error(), "spine.csv: row 3 has 2 columns"));
+    write_text(in(folder, "spine.csv"), "x,y,z\n-1,0,0\n1,0,0\n");
+
+    char *report = NULL;
+    CHECK(isochore_run_file(in(folder, "recipe.json"), NULL, NULL, &deformed, &report) == ISOCHORE_STATUS_OK);
+    size_t count = isochore_mesh_vertex_count(expected);
+    const double *positions = isochore_mesh_positions(deformed);
+    CHECK(isochore_mesh_vertex_count(deformed) == count);
+    CHECK(memcmp(positions, isochore_mesh_positions(expected), 3 * count * sizeof(double)) == 0);
+    CHECK(memcmp(positions + 3, CORNERS + 3, 3 * sizeof(double)) == 0);
+    CHECK(memcmp(positions, CORNERS, 3 * sizeof(double)) != 0);
+    CHECK(strstr(report, "\"volume_change\"") && access(in(folder, "output.obj"), F_OK) != 0);
+    isochore_text_free(report);
+    isochore_mesh_free(deformed);
+
+    int updates = 0;
+    deformed = NULL;
+    CHECK(isochore_run_file(in(folder, "recipe.json"), stop, &updates, &deformed, NULL) == ISOCHORE_STATUS_CANCELLED);
+    CHECK(updates > 0 && deformed == NULL);
+    CHECK(isochore_run_file(in(folder, "recipe.json"), NULL, NULL, NULL, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_run_file(NULL, NULL, NULL, &deformed, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(isochore_run_file(in(folder, "absent.toml"), NULL, NULL, &deformed, NULL) == ISOCHORE_STATUS_FILE);
+    CHECK(strstr(isochore_last_error(), "absent.toml: cannot read: "));
+    write_text(in(folder, "recipe.json"), "{ \"recipe\": 1,\n \"targe\": {} }");
+    CHECK(isochore_run_file(in(folder, "recipe.json"), NULL, NULL, &deformed, NULL) == ISOCHORE_STATUS_RECIPE);
+    CHECK(strstr(isochore_last_error(), in(folder, "recipe.json: ")) == isochore_last_error());
+
+    const char *const names[] = {"recipe.json", "target.obj", "weights.csv", "spine.csv"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        CHECK(remove(in(folder, names[i])) == 0);
+    }
+    CHECK(rmdir(folder) == 0);
+    isochore_mesh_free(expected);
+    isochore_mesh_free(target);
 }
 
 /* A twist of 10 degrees per unit rotates a point 9 units along the axis by 90 degrees. Points on the axis stay. No mesh is needed. */
@@ -296,7 +373,7 @@ static void masks(void) {
     options.weights = weights;
     options.weight_count = 3;
     CHECK(isochore_session_new(mesh, &options, &session) == ISOCHORE_STATUS_MESH);
-    CHECK(strstr(isochore_last_error(), "3 weights for 4 vertices"));
+    CHECK(strstr(isochore_last_error(), "3 weights are given for 4 vertices"));
     options.mask = "{\"pin\": []}";
     CHECK(isochore_session_new(mesh, &options, &session) == ISOCHORE_STATUS_RECIPE);
     CHECK(strstr(isochore_last_error(), "mask") && session == NULL);
@@ -305,7 +382,7 @@ static void masks(void) {
     options.mask = "{\"fade\": 0.1}";
     CHECK(isochore_session_new(mesh, &options, &session) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_freeze_edges(session, vertices, 5) == ISOCHORE_STATUS_ARGUMENT);
-    CHECK(strstr(isochore_last_error(), "4 is none"));
+    CHECK(strstr(isochore_last_error(), "vertex 4 is out of range"));
     CHECK(isochore_session_freeze_edges(session, vertices, 4) == ISOCHORE_STATUS_OK);
     CHECK(isochore_tool_new("ball", WIDE_BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
@@ -448,6 +525,7 @@ int main(int count, char **arguments) {
     meshes(arguments[1]);
     faulty_meshes();
     recipes();
+    recipe_files();
     points();
     sessions();
     queries();
