@@ -92,7 +92,7 @@ fn rejects_invalid_masks() {
         |text: &str, parts: &[&str]| expect_rejected("[output]", mask, &[("mask.csv", text)], parts);
     expect_weights_rejected("0\n1\n1.5\n", &["mask.csv: row 3: 1.5 is not a weight"]);
     expect_weights_rejected("weight\n0\nhalf\n", &["mask.csv: row 3, column 1: `half` is not a number"]);
-    expect_weights_rejected("0\n1\n", &["press.toml: mask.vertices: there are 2 weights for 642 vertices"]);
+    expect_weights_rejected("0\n1\n", &["press.toml: mask.vertices: 2 weights are given for 642 vertices"]);
     let target = "mesh = \"a.obj\"\n";
     let shape = "shape = { kind = \"icosphere\", radius = 1.0, subdivisions = 3 }";
     let masked = format!("{target}[mask]\nvertices = \"mask.csv\"");

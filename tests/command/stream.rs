@@ -190,16 +190,16 @@ fn errors_name_the_position_in_invalid_files() {
     expect_rejected("in.npy", &numpy_header("(4, 2)", "<f8"), &[], &["in.npy", "[4, 2]", "(N, 3)"]);
     expect_rejected("in.npy", &numpy_header("(4, 3)", "<i4"), &[], &["in.npy", "<i4", "f4 or f8"]);
     expect_rejected("in.npy", &numpy_header("(4, 3)", "<f4"), &[], &["in.npy", "4 points announced", "byte 128"]);
-    expect_rejected("in.obj", b"", &[], &["in.obj", ".ply and .npy alone"]);
+    expect_rejected("in.obj", b"", &[], &["in.obj", "only from .ply and .npy files"]);
 }
 
 #[test]
 fn errors_name_keys_that_need_a_mesh() {
     let whole = binary_ply(false, &points());
     let with = |setting: &str, parts: &[&str]| expect_rejected("in.ply", &whole, &["--set", setting], parts);
-    with("promise.volume=0.1", &["promise.volume", "needs a whole mesh"]);
-    with("output.preview=out.png", &["output.preview", "needs a whole mesh"]);
-    with("mask.vertices=[1, 0]", &["mask.vertices", "needs a whole mesh"]);
+    with("promise.volume=0.1", &["promise.volume", "needs a mesh"]);
+    with("output.preview=out.png", &["output.preview", "needs a mesh"]);
+    with("mask.vertices=[1, 0]", &["mask.vertices", "needs a mesh"]);
     with("stroke.0.kind=stamp", &["stroke.0", "stamp"]);
     expect_rejected("in.ply", &whole, &["--output", "out.obj"], &["out.obj", "same extension"]);
     let folder = Folder::with(&[("press.toml", PRESS)]);
