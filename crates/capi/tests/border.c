@@ -100,10 +100,11 @@ static void recipes(void) {
 }
 
 /* A recipe that moves material along a spine, except at vertex 1. The arguments are the target, the spine and the mask. */
-#define MASKED_STRIP                                                                                                        \
-    "{ \"recipe\": 1, \"target\": { \"mesh\": \"%s\" }, \"mask\": { \"vertices\": %s, \"fade\": 0.1 }, \"refine\": { \"enabled\": false }," \
-    " \"output\": { \"mesh\": \"output.obj\" }, \"stroke\": [ { \"kind\": \"strip\", \"mode\": \"along\", \"spine\": %s, \"radius\": 0.2, \"support\": 0.3,"             \
-    " \"distance\": 0.2 } ] }"
+#define MASKED_STRIP                                                                             \
+    "{ \"recipe\": 1, \"target\": { \"mesh\": \"%s\" }, \"refine\": { \"enabled\": false },"     \
+    " \"mask\": { \"vertices\": %s, \"fade\": 0.1 }, \"output\": { \"mesh\": \"output.obj\" },"  \
+    " \"stroke\": [ { \"kind\": \"strip\", \"mode\": \"along\", \"spine\": %s, \"radius\": 0.2," \
+    " \"support\": 0.3, \"distance\": 0.2 } ] }"
 
 /* Path of the file `name` in `folder`, in a buffer that the next call overwrites. */
 static const char *in(const char *folder, const char *name) {
