@@ -203,7 +203,7 @@ fn errors_name_keys_that_need_a_mesh() {
     with("stroke.0.kind=stamp", &["stroke.0", "stamp"]);
     expect_rejected("in.ply", &whole, &["--output", "out.obj"], &["out.obj", "same extension"]);
     let folder = Folder::with(&[("press.toml", PRESS)]);
-    folder.run(&["run", "press.toml", "--stream"]).expect_error(2, &["target", "needs target.mesh"]);
+    folder.run(&["run", "press.toml", "--stream"]).expect_error(2, &["target", "set target.mesh"]);
 }
 
 /// Limit on data memory of a stream in bytes, as stated in the README. The system enforces it.
