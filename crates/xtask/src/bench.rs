@@ -11,14 +11,14 @@ use crate::{
 
 /// The rows of the README: words of the job, and the start of the peer's name.
 const HEADLINES: [([&str; 2], &str); 8] = [
-    (["128 cells", "on one core"], "parry3d 0"),
-    (["128 cells", "on one core"], "Open3D"),
-    (["64 cells, with preparation", "1124k"], "Warp"),
-    (["advect", "128³"], "Warp"),
-    (["self-intersection", "1310720 triangles"], "PyMeshLab"),
-    (["split", "2378010"], "manifold3d"),
-    (["reading OBJ", "327680 triangles"], "MeshLib"),
-    (["reading GLB", "327680 triangles"], "trimesh"),
+    (["signed distance grid, 69k triangles", "128 cells"], "parry3d 0"),
+    (["signed distance grid, 69k triangles", "128 cells"], "Open3D"),
+    (["signed distance grid, 1124k triangles", "including preparation"], "Warp"),
+    (["advect", "grid of 128³"], "Warp"),
+    (["self-intersection check", "1,310,720 triangles"], "PyMeshLab"),
+    (["split", "into 2,"], "manifold3d"),
+    (["read OBJ", "327,680 triangles"], "MeshLib"),
+    (["read GLB", "327,680 triangles"], "trimesh"),
 ];
 
 /// Runs all programs, or those named on the command line, and writes the tables of all rows measured today.
