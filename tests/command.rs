@@ -4,6 +4,8 @@
 mod bad_input;
 #[path = "command/curves.rs"]
 mod curves;
+#[path = "command/documents.rs"]
+mod documents;
 #[path = "command/folder.rs"]
 mod folder;
 #[path = "command/help.rs"]

@@ -17,7 +17,7 @@ const GLOBAL: &str = "Global options";
 
 /// Deform triangle meshes and preserve their volume.
 ///
-/// Exit codes: 0 success; 1 a promise of the recipe was not kept, outputs are written; 2 invalid
+/// Exit codes: 0 success; 1 a promise of the recipe was missed, outputs are written; 2 invalid
 /// input or usage, nothing is written; 130 interrupted, nothing is written.
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(name = "isochore", version, max_term_width = 100)]
@@ -30,7 +30,7 @@ pub struct Arguments {
     #[arg(long, global = true, value_name = "N", help_heading = GLOBAL)]
     pub threads: Option<NonZeroUsize>,
 
-    /// Print only errors, warnings and broken promises
+    /// Print only errors, warnings and missed promises
     #[arg(long, short, global = true, help_heading = GLOBAL)]
     pub quiet: bool,
 

@@ -8,7 +8,7 @@
 //! | exit code | meaning |
 //! |---|---|
 //! | 0 | success; all promises of the recipe were kept |
-//! | 1 | a promise was not kept; the outputs are written and the report names the promise |
+//! | 1 | a promise was missed; the outputs are written and the report names the promise |
 //! | 2 | invalid input or usage; nothing is written |
 //! | 130 | interrupted; nothing is written |
 //!

@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &RunArguments, console: &Console) -> Result<Outcome
     Ok(conclude(&report, job.outputs.mesh.as_deref(), console))
 }
 
-/// Prints the report as JSON or a summary in words, and reports broken promises.
+/// Prints the report as JSON or a summary in words, and reports missed promises.
 pub(crate) fn conclude(report: &Report, mesh: Option<&Path>, console: &Console) -> Outcome {
     console.finish();
     for warning in &report.warnings {

@@ -18,7 +18,7 @@ use crate::{
 
 /// Ratio of height to longest edge of a triangle below which its normal is not trusted for signs.
 /// Larger: meshes with needles use the winding number, which is slower. Smaller: rounding rotates
-/// such a normal by 1e-16 over this number.
+/// such a normal by up to 1e-16 divided by this value.
 const NEEDLE: f64 = 1e-6;
 
 /// The exact signed distance to a mesh, with one query of its hierarchy per point.

@@ -98,7 +98,7 @@ impl PointFlow {
         }
         let (strokes, mut warnings) = Scene::strokes(recipe, meshes, bounds, monitor)?;
         if recipe.volume.lock {
-            warnings.push("points enclose no volume: the volume lock was left out".to_owned());
+            warnings.push("the lock was skipped: points enclose no volume".to_owned());
         }
         Ok(Self { strokes, warnings })
     }

@@ -176,8 +176,8 @@ pub struct Promise {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Volume {
-    /// Whether to restore the volume exactly, by the smallest displacement of the deformed vertices
-    /// that does so.
+    /// Whether to restore the volume exactly, by moving each deformed vertex along its normal in
+    /// proportion to its displacement.
     pub lock: bool,
 }
 

@@ -102,7 +102,7 @@ fn what_is_wrong_with_a_mask_is_named() {
     for (settings, words) in [
         (&["mask.pins.0.support=0"][..], "mask.pins.0.support: is 0; give a number above 0"),
         (&["mask.pins.0.radius=-1"], "mask.pins.0.radius: is -1; give 0 or more"),
-        (&["mask.mirror.0.normal=[0,0,0]"], "mask.mirror.0.normal: has an axis of length zero"),
+        (&["mask.mirror.0.normal=[0,0,0]"], "mask.mirror.0.normal: has length zero"),
         (
             &["mask.mirror=[{point=[0,0,0],normal=[1,0,0]},{point=[0,0,0],normal=[1,1,0]}]"],
             "mask.mirror: mirror planes 0 and 1, counted from 0, are not perpendicular",

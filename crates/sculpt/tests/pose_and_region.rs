@@ -61,7 +61,7 @@ fn errors_name_key_and_remedy() {
         ("keys = [ {}, ", "keys = [ ", "stroke.0.keys: has 1 poses; a motion needs at least 2"),
         ("translate = [0, 0, 0.5]", "", "stroke.1.motion: names neither `translate` nor `rotate`"),
         ("half_space", "halfspace", "stroke.1.inner.kind: unknown value `halfspace`; did you mean `half_space`?"),
-        ("normal = [0, 0, 1]", "normal = [0, 0, 0]", "stroke.1.inner.normal: has an axis of length zero"),
+        ("normal = [0, 0, 1]", "normal = [0, 0, 0]", "stroke.1.inner.normal: has length zero"),
         ("outer_distance = 0.5", "outer_distance = 0", "stroke.1.outer_distance: is 0; give a number above 0"),
         ("outer_distance = 0.5", "outer_distance = 0.5\nprofile = \"thesis\"", "stroke.1.profile: `thesis` has a kink"),
     ];

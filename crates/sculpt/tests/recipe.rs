@@ -115,7 +115,7 @@ fn errors_name_line_key_and_remedy() {
         (
             "axis = [0, 0, 1]\ndegrees_per_unit ",
             "axis = [0, 0, 0]\ndegrees_per_unit ",
-            "line 27: stroke.1.axis: has an axis of length zero",
+            "line 27: stroke.1.axis: has length zero",
         ),
         (
             "kind = \"twist\"",
@@ -208,7 +208,7 @@ fn a_pose_must_have_numbers_and_an_axis() {
     // The sine of a quarter turn is exact up to rounding.
     assert!(pose.transform(DVec3::X).distance(DVec3::new(1.0, 3.0, 3.0)) < 1e-15);
     let wrong = [
-        (Key { rotate: [0.0, 0.0, 0.0, 90.0], ..key.clone() }, "rotate", "axis of length zero"),
+        (Key { rotate: [0.0, 0.0, 0.0, 90.0], ..key.clone() }, "rotate", "has length zero"),
         (Key { rotate: [0.0, 0.0, 1.0, f64::NAN], ..key.clone() }, "rotate", "NaN"),
         (Key { at: [f64::INFINITY, 0.0, 0.0], ..key }, "at", "inf"),
     ];

@@ -114,7 +114,7 @@ fn errors_name_line_key_and_remedy() {
             "tool = \"ball\"\nreference = [0, 0, 1]",
             "stroke.2.reference: applies only to strips with a section",
         ),
-        ("axis = [0, 0, 2]", "axis = [0, 0, 0]", "stroke.4.axis: has an axis of length zero"),
+        ("axis = [0, 0, 2]", "axis = [0, 0, 0]", "stroke.4.axis: has length zero"),
     ] {
         let error = error_of(from, to);
         assert!(error.contains(words), "{error}\n{words}");

@@ -36,7 +36,7 @@ type Task = (&'static str, &'static str, fn() -> TaskResult);
 const TASKS: &[Task] = &[
     (
         "test",
-        "run formatting, lints, prose and documentation checks, all tests in Rust, C and Python, and the oracle",
+        "check formatting, lints, prose, documentation and packages, and run all tests in Rust, C and Python and the oracle",
         test::run_all,
     ),
     (

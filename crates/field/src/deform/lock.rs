@@ -12,7 +12,7 @@ use super::balance::{balance, balance_part};
 pub struct Lock {
     /// Longest displacement of a vertex, model units.
     pub max_shift: f64,
-    /// Largest ratio of a vertex' displacement to the shortest edge at it.
+    /// Largest ratio of a vertex's displacement to the shortest edge at it.
     pub max_shift_per_edge: f64,
 }
 

@@ -141,7 +141,8 @@ impl fmt::Display for Note {
                 write!(f, "refinement of stroke {stroke} stopped at the limit of {max_triangles} triangles")
             }
             Self::StepHalved { stroke, times } => {
-                write!(f, "the time step of stroke {stroke} was halved {times} times to preserve volume")
+                let times = if *times == 1 { "once".to_owned() } else { format!("{times} times") };
+                write!(f, "the time step of stroke {stroke} was halved {times} to preserve volume")
             }
             Self::Jacobian { stroke, range: JacobianRange { min, max } } => {
                 write!(

@@ -164,7 +164,7 @@ pub enum NumberProblem {
         what: &'static str,
     },
     /// A vector of length zero that gives a direction.
-    #[error("has an axis of length zero; give it a direction, such as [0, 0, 1]")]
+    #[error("has length zero; give it a direction, such as [0, 0, 1]")]
     ZeroAxis,
 }
 

@@ -55,10 +55,36 @@ fn render() -> TaskResult<String> {
         entries.dedup_by(|a, b| a.message == b.message);
         write!(index, "\n### {heading}\n\n| message | meaning |\n|---|---|\n")?;
         for Entry { message, meaning } in entries {
-            writeln!(index, "| `{}` | {} |", message.replace('|', "\\|"), meaning.replace('|', "\\|"))?;
+            writeln!(index, "| {} | {} |", code_span(&message), plain_links(&meaning).replace('|', "\\|"))?;
         }
     }
     Ok(TEMPLATE.replace(INDEX_LINE, &index))
+}
+
+/// A message as code in a table, also if it holds back quotes.
+fn code_span(message: &str) -> String {
+    let message = message.replace('|', "\\|");
+    if message.contains('`') { format!("`` {message} ``") } else { format!("`{message}`") }
+}
+
+/// Documentation whose links to items are replaced by their text.
+fn plain_links(text: &str) -> String {
+    let mut pieces = text.split('[');
+    let mut plain = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        match piece.split_once(']') {
+            Some((name, rest)) if name.starts_with('`') => {
+                plain.push_str(name);
+                let address = rest.strip_prefix('(').and_then(|rest| rest.split_once(')'));
+                plain.push_str(address.map_or(rest, |(_, after)| after));
+            }
+            _ => {
+                plain.push('[');
+                plain.push_str(piece);
+            }
+        }
+    }
+    plain
 }
 
 /// Every warning that the template quotes in the first column of its table must be part of a source file.
@@ -128,6 +154,13 @@ fn documentation_before(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn back_quotes_and_links_survive_the_table() {
+        assert_eq!(code_span("a | b"), "`a \\| b`");
+        assert_eq!(code_span("no `x`"), "`` no `x` ``");
+        assert_eq!(plain_links("See [`a`](crate::A::a) and [`b`], as in [1]."), "See `a` and `b`, as in [1].");
+    }
 
     #[test]
     fn messages_are_found_with_their_documentation() {
