@@ -98,7 +98,7 @@ fn rates_that_refinement_cannot_follow_are_refused() {
 }
 
 #[test]
-fn what_is_wrong_with_a_mask_is_named() {
+fn errors_of_masks_name_the_key() {
     for (settings, words) in [
         (&["mask.pins.0.support=0"][..], "mask.pins.0.support: is 0; give a number above 0"),
         (&["mask.pins.0.radius=-1"], "mask.pins.0.radius: is -1; give 0 or more"),
@@ -111,7 +111,7 @@ fn what_is_wrong_with_a_mask_is_named() {
         (&["mask.fade=1"], "mask.fade: sets how the weights of `vertices` fade"),
         (&["mask.vertices=[0,1,2]"], "mask.vertices.2: is 2; give 1 or less"),
         (&["mask.vertices=[0,1,'a']"], "mask.vertices.2: "),
-        (&["mask.vertices=[0,1]"], "mask.vertices: there are 2 weights for 642 vertices"),
+        (&["mask.vertices=[0,1]"], "mask.vertices: 2 weights are given for 642 vertices"),
         (&["mask.vertices=7"], "mask.vertices: expected the name of a file or a list of numbers, found 7"),
         (&["mask.vertices=a.csv"], "mask.vertices: the file `a.csv` was not loaded"),
         (&["mask.pin=[]"], "unknown key; did you mean `pins`?"),
