@@ -5,12 +5,12 @@
 
 mod text;
 
-use std::{collections::BTreeMap, fs, process::Command};
+use std::{collections::BTreeMap, fs};
 
 use regex::Regex;
 
 use self::text::{Line, Source, lines};
-use crate::shell::{TaskResult, workspace};
+use crate::shell::{TaskResult, project_files, workspace};
 
 /// An idiom, and how many of them a thousand comment lines of Rust may hold.
 struct Idiom {
@@ -46,7 +46,7 @@ const IDIOMS: [Idiom; 9] = [
 /// Counts the idioms in all files of the repository, prints those found, and fails above the limits.
 pub(crate) fn check() -> TaskResult {
     let mut report = Report::default();
-    for path in tracked_files()? {
+    for path in project_files(&[])? {
         let Some(source) = Source::of(&path) else { continue };
         let text = fs::read_to_string(workspace().join(&path))?;
         report.add(&path, &lines(source, &text));
@@ -54,17 +54,6 @@ pub(crate) fn check() -> TaskResult {
     report.print();
     let failures = report.failures();
     if failures.is_empty() { Ok(()) } else { Err(failures.join("; ").into()) }
-}
-
-/// Paths of the files under version control that still exist.
-fn tracked_files() -> TaskResult<Vec<String>> {
-    let output =
-        Command::new("git").args(["ls-files", "-co", "--exclude-standard"]).current_dir(workspace()).output()?;
-    let paths = String::from_utf8(output.stdout)?;
-    let mut paths: Vec<String> =
-        paths.lines().filter(|path| workspace().join(path).is_file()).map(str::to_owned).collect();
-    paths.sort();
-    Ok(paths)
 }
 
 /// Counts by idiom.

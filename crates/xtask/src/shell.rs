@@ -37,3 +37,14 @@ pub(crate) fn cargo(arguments: &[&str]) -> Command {
     command.args(arguments);
     command
 }
+
+/// Paths of the files under version control or about to be, relative to the workspace and sorted. Patterns are those of Git.
+pub(crate) fn project_files(patterns: &[&str]) -> TaskResult<Vec<String>> {
+    let mut list = Command::new("git");
+    list.args(["ls-files", "-co", "--exclude-standard", "--"]).args(patterns).current_dir(workspace());
+    let listing = String::from_utf8(list.output()?.stdout)?;
+    let mut paths: Vec<String> =
+        listing.lines().filter(|path| workspace().join(path).is_file()).map(str::to_owned).collect();
+    paths.sort();
+    Ok(paths)
+}

@@ -1,8 +1,8 @@
 //! The page of the guide that lists every error message, generated from the error types of the crates.
 
-use std::{fmt::Write as _, fs, path::PathBuf, process::Command};
+use std::{fmt::Write as _, fs, path::PathBuf};
 
-use crate::shell::{TaskResult, workspace};
+use crate::shell::{TaskResult, project_files, workspace};
 
 /// The hand-written part of the page, and the line that the index replaces.
 const TEMPLATE: &str = include_str!("errors.template.md");
@@ -100,14 +100,9 @@ fn check_warnings() -> TaskResult {
 
 /// Rust files below a folder and their texts, in the order of their paths.
 fn sources(folder: &str) -> TaskResult<Vec<(String, String)>> {
-    let pattern = format!(":(glob){folder}/**/*.rs");
-    let mut list = Command::new("git");
-    list.args(["ls-files", "-co", "--exclude-standard", "--", &pattern]).current_dir(workspace());
-    let listing = list.output()?;
-    let mut paths: Vec<String> = String::from_utf8(listing.stdout)?.lines().map(str::to_owned).collect();
-    paths.sort();
+    let paths = project_files(&[&format!(":(glob){folder}/**/*.rs")])?;
     let read = |path: String| Ok((path.clone(), fs::read_to_string(workspace().join(path))?));
-    paths.into_iter().filter(|path| workspace().join(path).is_file()).map(read).collect()
+    paths.into_iter().map(read).collect()
 }
 
 /// A text in which literals that a backslash continues on the next line are joined.

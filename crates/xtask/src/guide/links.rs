@@ -1,23 +1,16 @@
 //! Links between the documents of the repository.
 
-use std::{collections::BTreeSet, fs, path::Path, process::Command};
+use std::{collections::BTreeSet, fs, path::Path};
 
-use crate::shell::{TaskResult, workspace};
+use crate::shell::{TaskResult, project_files, workspace};
 
 /// Fails on a link or image in a Markdown file whose target, or the heading within it, does not exist.
 ///
 /// Addresses of other sites are not opened.
 pub(super) fn check() -> TaskResult {
-    let listing = Command::new("git")
-        .args(["ls-files", "-co", "--exclude-standard", "*.md"])
-        .current_dir(workspace())
-        .output()?;
     let mut broken = Vec::new();
-    for path in String::from_utf8(listing.stdout)?.lines() {
-        let path = workspace().join(path);
-        if path.is_file() {
-            broken.extend(broken_links(&path)?);
-        }
+    for path in project_files(&["*.md"])? {
+        broken.extend(broken_links(&workspace().join(path))?);
     }
     if broken.is_empty() { Ok(()) } else { Err(broken.join("\n").into()) }
 }
