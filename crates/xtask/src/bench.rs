@@ -134,7 +134,19 @@ fn measured_on(today: &str) -> TaskResult<String> {
     let compiler = output(Command::new("rustc").arg("--version"))?;
     let compiler = compiler.split(" (").next().unwrap_or(&compiler);
     let model = model.unwrap_or(std::env::consts::ARCH);
-    Ok(format!("{today}, {cores} cores of {model}, {compiler}.\n"))
+    let vectors = widest_vectors(&processors);
+    Ok(format!("{today}, {cores} cores of {model} with {vectors}, {compiler}.\n"))
+}
+
+/// Width of the vectors of the processor, which decides most ratios.
+fn widest_vectors(processors: &str) -> &'static str {
+    let flags = processors.lines().find(|line| line.starts_with("flags")).unwrap_or_default();
+    let has = |flag: &str| flags.split_whitespace().any(|word| word == flag);
+    match (has("avx512f"), has("avx2")) {
+        (true, _) => "512-bit vectors",
+        (false, true) => "256-bit vectors",
+        _ => "128-bit vectors",
+    }
 }
 
 fn output(command: &mut Command) -> TaskResult<String> {
@@ -145,6 +157,13 @@ fn output(command: &mut Command) -> TaskResult<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_the_widest_vectors() {
+        assert_eq!(widest_vectors("model name: x\nflags\t\t: sse4_2 avx avx2\n"), "256-bit vectors");
+        assert_eq!(widest_vectors("flags : avx2 avx512f"), "512-bit vectors");
+        assert_eq!(widest_vectors(""), "128-bit vectors");
+    }
 
     #[test]
     fn numbers_have_three_significant_digits() {
