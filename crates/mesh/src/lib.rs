@@ -23,8 +23,8 @@
 //!   registers.
 //! - The volume is the compensated sum over triangles of a · (b × c) / 6, relative to the center of
 //!   the bounds.
-//! - Predicates of [`TriMesh::check`] and [`SelfIntersections`] are exact, not subject to a
-//!   tolerance.
+//! - Predicates of [`TriMesh::check`], [`SelfIntersections`] and [`triangles_intersect`] are exact,
+//!   not subject to a tolerance.
 //! - Attributes are interpolated once, in the original triangle. Unmoved values keep their bits.
 //! - Undo of an [`EditMesh`] or a [`Journaled`] array restores every bit.
 //!
@@ -197,7 +197,7 @@ pub use journaled::{Delta, FreeSlots, Journaled};
 pub use measure::{Components, EdgeLengths, VolumeFrame, signed_volume};
 pub use mesh_distance::MeshDistance;
 pub use monitor::{Cancelled, Monitor, NoProgress};
-pub use self_intersection::{SelfIntersectionError, SelfIntersections};
+pub use self_intersection::{SelfIntersectionError, SelfIntersections, triangles_intersect};
 pub use shapes::{Capsule, Ellipsoid, HalfSpace, RoundedBox, ShapeError, Sphere, Torus};
 pub use surface_tree::{SurfaceHit, SurfaceTree};
 pub use topology::Topology;

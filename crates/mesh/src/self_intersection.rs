@@ -7,6 +7,7 @@
 mod box_tree;
 mod common_corners;
 mod exact_triangle;
+mod pair;
 mod separation;
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,7 @@ use crate::{Aabb, BvhError, Cancelled, Monitor, TriMesh};
 use box_tree::{BoxTree, NodePair};
 use common_corners::CommonCorners;
 use exact_triangle::{ExactTriangle, scaled};
+pub use pair::triangles_intersect;
 use separation::{LANES, PairBlock};
 
 /// Target number of node pairs into which the work is divided. More: listing them takes longer.

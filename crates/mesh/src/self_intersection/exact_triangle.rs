@@ -21,11 +21,15 @@ const LARGEST_EXPONENT: i32 = 100;
 /// Multiplies `positions` by a power of two, which is exact. The factor is `scale`, or smaller if
 /// the positions used by the triangles would become too large.
 pub(super) fn scaled(positions: &[DVec3], triangles: &[[u32; 3]], scale: f64) -> Vec<DVec3> {
-    let used = || triangles.iter().flatten().map(|&vertex| positions[vertex as usize]);
-    let largest = used().fold(0.0, |largest: f64, p| largest.max(p.abs().max_element()));
-    let allowed = libm::ldexp(1.0, LARGEST_EXPONENT - libm::frexp(largest).1);
-    let scale = scale.min(allowed);
+    let used = triangles.iter().flatten().map(|&vertex| positions[vertex as usize]);
+    let scale = bounded_scale(used, scale);
     positions.par_iter().map(|&position| position * scale).collect()
+}
+
+/// Returns `scale`, or a smaller power of two if it would make one of `points` too large.
+pub(super) fn bounded_scale(points: impl IntoIterator<Item = DVec3>, scale: f64) -> f64 {
+    let largest = points.into_iter().fold(0.0, |largest: f64, p| largest.max(p.abs().max_element()));
+    scale.min(libm::ldexp(1.0, LARGEST_EXPONENT - libm::frexp(largest).1))
 }
 
 impl ExactTriangle {

@@ -132,6 +132,47 @@ fn stops_when_cancelled() {
     assert_eq!(result, Err(SelfIntersectionError::Cancelled(Cancelled)));
 }
 
+#[test]
+fn one_pair_at_any_scale() {
+    let piercing = [[0.5, 0.5, -1.0], [0.5, 0.5, 1.0], [3.0, 3.0, 0.0]];
+    let above = [[0.5, 0.5, 1e-9], [0.5, 0.5, 1.0], [1.0, 0.5, 1.0]];
+    // The products of three lengths overflow or underflow in the end cases.
+    for scale in [1e-150, 1e-9, 1.0, 1e9, 1e150] {
+        let at = |triangle: [[f64; 3]; 3]| triangle.map(|corner| scale * DVec3::from_array(corner));
+        assert!(triangles_intersect(at(FLAT), at(piercing)), "{scale}");
+        assert!(!triangles_intersect(at(FLAT), at(above)), "{scale}");
+    }
+    let nowhere = [DVec3::NAN, DVec3::INFINITY, DVec3::ZERO];
+    assert!(!triangles_intersect(FLAT.map(DVec3::from_array), nowhere));
+    assert!(!triangles_intersect(nowhere, nowhere));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #[test]
+    fn one_pair_agrees_with_the_search(
+        coordinates in prop::array::uniform18(-2..=2_i64),
+        shift in prop::array::uniform18(-1.0..1.0_f64),
+        common in 0..=3_usize,
+        spread in prop::sample::select(vec![0.0, 1e-300, 1e-16, 1e-3, 1.0]),
+    ) {
+        // Corners on a small lattice coincide, are collinear or coplanar; shifted ones nearly so.
+        let corner = |i: usize| {
+            DVec3::from_array(std::array::from_fn(|axis| {
+                coordinates[3 * i + axis] as f64 + spread * shift[3 * i + axis]
+            }))
+        };
+        let first = [corner(0), corner(1), corner(2)];
+        let mut second = [corner(3), corner(4), corner(5)];
+        second[..common].copy_from_slice(&first[3 - common..]);
+        second.rotate_left(coordinates[0].rem_euclid(3) as usize);
+        let mesh = TriMesh::new([first, second].concat(), vec![[0, 1, 2], [3, 4, 5]]);
+        let found = SelfIntersections::of(&mesh, &NoProgress).unwrap();
+        prop_assert_eq!(triangles_intersect(first, second), !found.is_empty());
+        prop_assert_eq!(triangles_intersect(second, first), !found.is_empty());
+    }
+}
+
 proptest! {
     #[test]
     fn agrees_with_exact_integers(coordinates in prop::array::uniform18(-2..=2_i64)) {
