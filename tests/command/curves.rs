@@ -130,9 +130,9 @@ fn swept_meshes_are_closed_on_request() {
 
 #[test]
 fn nets_are_exact_patches_of_degree_nine() {
-    let profile = "-0.08,0.016\n-0.04,0.096\n0.04,0.08\n0.096,-0.024\n";
-    let folder = Folder::with(&[("helix.csv", &helix(9)), ("profile.csv", profile), ("square.csv", &square(0.2))]);
-    let arguments = ["sweep", "helix.csv", "--bezier", "--profile", "profile.csv", "--output", "net.json"];
+    let section = "-0.08,0.016\n-0.04,0.096\n0.04,0.08\n0.096,-0.024\n";
+    let folder = Folder::with(&[("helix.csv", &helix(9)), ("section.csv", section), ("square.csv", &square(0.2))]);
+    let arguments = ["sweep", "helix.csv", "--bezier", "--profile", "section.csv", "--output", "net.json"];
     folder.run(&arguments).expect(0);
     let net = folder.json("net.json");
     assert_eq!((net["degree_u"].as_u64(), net["degree_v"].as_u64()), (Some(3), Some(9)));
@@ -205,20 +205,20 @@ fn errors_name_the_rows_of_invalid_curves() {
 fn rejects_invalid_sweeps() {
     let files = [
         ("curve.csv", "0,0,0\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n"),
-        ("profile.csv", "0,0\n1,0\n0,1\n"),
+        ("section.csv", "0,0\n1,0\n0,1\n"),
         ("one.csv", "0,0\n"),
     ];
     for (arguments, parts) in [
         (&["--profile", "one.csv", "-o", "a.obj"][..], &["one.csv", "at least 2 rows"][..]),
         (&["--profile", "curve.csv", "-o", "a.obj"], &["curve.csv", "row 1 has 3 columns; expected 2"]),
-        (&["--profile", "profile.csv", "-o", "a.iges"], &["a.iges", "supported are"]),
-        (&["--profile", "profile.csv", "-o", "a.obj", "--caps"], &["--caps", "--profile-closed"]),
+        (&["--profile", "section.csv", "-o", "a.iges"], &["a.iges", "supported are"]),
+        (&["--profile", "section.csv", "-o", "a.obj", "--caps"], &["--caps", "--profile-closed"]),
         (
-            &["--profile", "profile.csv", "-o", "a.obj", "--bezier", "--profile-closed"],
+            &["--profile", "section.csv", "-o", "a.obj", "--bezier", "--profile-closed"],
             &["--profile-closed", "--bezier"],
         ),
-        (&["--profile", "profile.csv", "-o", "a.json", "--method", "rotation"], &["--method ph"]),
-        (&["--profile", "profile.csv", "-o", "a.json", "--twist", "1"], &["--twist", "write a mesh"]),
+        (&["--profile", "section.csv", "-o", "a.json", "--method", "rotation"], &["--method ph"]),
+        (&["--profile", "section.csv", "-o", "a.json", "--twist", "1"], &["--twist", "write a mesh"]),
         (&["--profile", "none.csv", "-o", "a.obj"], &["none.csv", "No such file"]),
     ] {
         let folder = Folder::with(&files);

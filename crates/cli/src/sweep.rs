@@ -58,12 +58,12 @@ pub(crate) fn sweep(arguments: &SweepArguments, console: &Console) -> Result<Out
     let options = SpineOptions::new(&arguments.spine, default_twist)?;
     let mut staging = Staging::new(console.interrupt());
     let draft = staging.add_file(&arguments.output)?;
-    let outline = CrossSection::read(arguments)?;
+    let cross_section = CrossSection::read(arguments)?;
     let spine = SpineFile::read(&options)?;
-    let exact = || Net::new(&options, &spine, &outline);
+    let exact = || Net::new(&options, &spine, &cross_section);
     let summary = match surface {
         Surface::Mesh => {
-            let mesh = mesh(&options, &spine, &outline, arguments.caps)?;
+            let mesh = mesh(&options, &spine, &cross_section, arguments.caps)?;
             staging.write_mesh(&draft, &mesh)?;
             format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len())
         }
@@ -99,15 +99,16 @@ fn check(arguments: &SweepArguments) -> Result<(), CommandError> {
 fn mesh(
     options: &SpineOptions,
     spine: &SpineFile,
-    outline: &CrossSection,
+    cross_section: &CrossSection,
     has_caps: bool,
 ) -> Result<TriMesh, CommandError> {
     let result = spine.stations(options)?;
     let rows_close = result.is_closed && !matches!(options.rotation, Rotation::None);
     // If the frames close, the last station equals the first.
     let rows = result.stations.len() - usize::from(rows_close);
-    let points = outline.points();
+    let points = cross_section.points();
     let grid = sweep_grid(&result.stations[..rows], &points);
-    let grid = GridMesh { points: &grid.points, columns: grid.columns, rows_close, columns_close: outline.is_closed };
+    let grid =
+        GridMesh { points: &grid.points, columns: grid.columns, rows_close, columns_close: cross_section.is_closed };
     Ok(if has_caps { grid.capped_mesh(&points) } else { grid.mesh() })
 }

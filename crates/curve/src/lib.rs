@@ -109,7 +109,6 @@ mod gauge_quadrature;
 mod inversion;
 mod moebius;
 mod ph_cubic;
-mod profile_surface;
 mod projection;
 mod quadrature;
 mod reach;
@@ -117,6 +116,7 @@ mod rotation;
 mod runge_kutta;
 mod spine;
 mod spline;
+mod swept_surface;
 mod tangents;
 mod tangents_only;
 mod twist;
@@ -136,16 +136,16 @@ pub use gauge_quadrature::exact_frames;
 pub use inversion::Inversion;
 pub use moebius::{MoebiusSegment, MoebiusSpline, Tilt};
 pub use ph_cubic::{HermiteError, PhCubic, PhCubicError, PhSpline, PhSplineError, RationalRotation};
-pub use profile_surface::{
-    CrossSectionJet, PointGrid, RationalCrossSection, RationalPatch, SurfaceJet, profile_surface_curvature, regularity,
-    safe_cross_section_radius, sweep, sweep_varying,
-};
 pub use projection::project_along_chord;
 pub use reach::{Reach, reach};
 pub use rotation::rotate_minimally;
 pub use runge_kutta::runge_kutta_frames;
 pub use spine::{Spine, SpineError, perpendicular, uniform_parameters};
 pub use spline::{CubicSpline, EndCondition, Parametrization, SplineError};
+pub use swept_surface::{
+    CrossSectionJet, PointGrid, RationalCrossSection, RationalPatch, SurfaceJet, regularity, safe_cross_section_radius,
+    sweep, sweep_varying, swept_surface_curvature,
+};
 pub use tangents::{TangentError, TangentRule};
 pub use tangents_only::chord_from_tangents;
 pub use twist::{

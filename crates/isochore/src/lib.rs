@@ -43,7 +43,7 @@
 //! | [`field`] | `isochore-field` | always | tools, fields, strokes, masks, [`field::deform`] |
 #![cfg_attr(
     feature = "curve",
-    doc = "| [`curve`] | `isochore-curve` | `curve` (default) | spines, rotation-minimizing frames, profile surfaces |"
+    doc = "| [`curve`] | `isochore-curve` | `curve` (default) | spines, rotation-minimizing frames, swept surfaces |"
 )]
 #![cfg_attr(
     feature = "session",

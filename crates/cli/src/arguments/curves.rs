@@ -25,7 +25,7 @@ pub struct SweepArguments {
 
     /// Cross-section, one point per row, with coordinates along r and s; with --bezier an optional
     /// third column holds weights
-    #[arg(long, value_name = "PROFILE.csv", value_hint = ValueHint::FilePath)]
+    #[arg(long, value_name = "CROSS_SECTION.csv", value_hint = ValueHint::FilePath)]
     pub profile: PathBuf,
 
     /// Surface: a mesh (.obj .gltf .glb .ply .stl .off), or exact rational patches of degree 9

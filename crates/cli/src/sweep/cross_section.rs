@@ -1,4 +1,4 @@
-//! The outline that a sweep moves along a curve.
+//! The cross-section that a sweep moves along a curve.
 
 use glam::{DVec2, DVec3};
 use isochore_curve::RationalCrossSection;
@@ -6,7 +6,7 @@ use isochore_sculpt::files::CsvTable;
 
 use crate::{arguments::SweepArguments, command_error::CommandError};
 
-/// Number of points of a Bézier outline on a mesh.
+/// Number of points of a Bézier cross-section on a mesh.
 const BEZIER_POINTS: usize = 33;
 
 /// A cross-section read from a file: a polyline, a polygon or a rational Bézier curve.
@@ -23,7 +23,7 @@ impl CrossSection {
     ///
     /// # Errors
     /// The file is not a table of two columns (or three with `--bezier`), has too few rows, a
-    /// weight is not positive, or a closed outline repeats its first point.
+    /// weight is not positive, or a closed cross-section repeats its first point.
     pub(super) fn read(arguments: &SweepArguments) -> Result<Self, CommandError> {
         let columns: &[usize] = if arguments.bezier { &[2, 3] } else { &[2] };
         let table = CsvTable::read(&arguments.profile, columns)?;
@@ -48,7 +48,7 @@ impl CrossSection {
         Ok(Self { rows, is_bezier: arguments.bezier, is_closed })
     }
 
-    /// Points to sweep, counter-clockwise if the outline is closed.
+    /// Points to sweep, counter-clockwise if the cross-section is closed.
     pub(super) fn points(&self) -> Vec<DVec2> {
         if self.is_bezier {
             return (0..BEZIER_POINTS).map(|i| self.bezier_point(i as f64 / (BEZIER_POINTS - 1) as f64)).collect();
@@ -56,7 +56,7 @@ impl CrossSection {
         let mut points: Vec<DVec2> = self.rows.iter().map(|row| row.truncate()).collect();
         let doubled_area: f64 = (0..points.len()).map(|i| points[i].perp_dot(points[(i + 1) % points.len()])).sum();
         if self.is_closed && doubled_area < 0.0 {
-            // A counter-clockwise outline makes the normals of the surface point outward.
+            // A counter-clockwise cross-section makes the normals of the surface point outward.
             points.reverse();
         }
         points
@@ -71,7 +71,7 @@ impl CrossSection {
         points[0].truncate() / points[0].z
     }
 
-    /// The rational curves that form the outline.
+    /// The rational curves that form the cross-section.
     pub(super) fn curves(&self) -> Vec<RationalCrossSection> {
         if self.is_bezier {
             return vec![RationalCrossSection { control_points: self.rows.clone() }];
@@ -89,18 +89,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn reverses_clockwise_outlines() {
+    fn reverses_clockwise_cross_sections() {
         let rows = [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)].map(|(x, y)| DVec3::new(x, y, 1.0)).to_vec();
-        let outline = CrossSection { rows, is_bezier: false, is_closed: true };
-        assert_eq!(outline.points()[0], DVec2::X);
-        assert_eq!(outline.curves().len(), 3);
+        let cross_section = CrossSection { rows, is_bezier: false, is_closed: true };
+        assert_eq!(cross_section.points()[0], DVec2::X);
+        assert_eq!(cross_section.curves().len(), 3);
     }
 
     #[test]
     fn weights_of_a_quarter_circle_give_unit_radius() {
         let weight = std::f64::consts::FRAC_1_SQRT_2;
         let rows = vec![DVec3::new(1.0, 0.0, 1.0), DVec3::new(weight, weight, weight), DVec3::new(0.0, 1.0, 1.0)];
-        let outline = CrossSection { rows, is_bezier: true, is_closed: false };
-        assert!(outline.points().iter().all(|point| (point.length() - 1.0).abs() < 1e-15));
+        let cross_section = CrossSection { rows, is_bezier: true, is_closed: false };
+        assert!(cross_section.points().iter().all(|point| (point.length() - 1.0).abs() < 1e-15));
     }
 }

@@ -17,7 +17,7 @@ pub(super) struct Net {
     /// Patches, indexed by segment of the curve, then by curve of the cross-section.
     pub(super) patches: Vec<Vec<RationalPatch>>,
     /// Whether the cross-section is closed.
-    pub(super) is_outline_closed: bool,
+    pub(super) is_cross_section_closed: bool,
 }
 
 /// Contents of the JSON file.
@@ -47,8 +47,12 @@ impl Net {
     ///
     /// # Errors
     /// A segment has no such cubic, or the reference vector is parallel to the first tangent.
-    pub(super) fn new(options: &SpineOptions, spine: &SpineFile, outline: &CrossSection) -> Result<Self, CommandError> {
-        let curves = outline.curves();
+    pub(super) fn new(
+        options: &SpineOptions,
+        spine: &SpineFile,
+        cross_section: &CrossSection,
+    ) -> Result<Self, CommandError> {
+        let curves = cross_section.curves();
         let spline = spine.ph_spline()?;
         let frames = spline
             .exact_frames(spine.reference(options), 1)
@@ -64,7 +68,7 @@ impl Net {
                 curves.iter().map(|curve| RationalPatch::sweep(cubic, &rotation, curve, angle)).collect()
             })
             .collect();
-        Ok(Self { patches, is_outline_closed: outline.is_closed })
+        Ok(Self { patches, is_cross_section_closed: cross_section.is_closed })
     }
 
     pub(super) fn to_json(&self) -> String {

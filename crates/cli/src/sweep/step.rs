@@ -33,7 +33,7 @@ pub(super) fn to_step(net: &Net, path: &Path) -> String {
 
 fn shell(net: &Net) -> Shell {
     let (segments, sides) = (net.patches.len(), net.patches[0].len());
-    let corners = if net.is_outline_closed { sides } else { sides + 1 };
+    let corners = if net.is_cross_section_closed { sides } else { sides + 1 };
     // Vertices form a grid: joints of the curve times corners of the cross-section.
     let vertex = |joint: usize, corner: usize| joint * corners + corner % corners;
     let across = |joint: usize, side: usize| joint * sides + side;

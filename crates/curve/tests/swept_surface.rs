@@ -1,4 +1,4 @@
-//! Profile surfaces: comparison of the exact rational patch with direct evaluation, golden values
+//! Swept surfaces: comparison of the exact rational patch with direct evaluation, golden values
 //! and the checks of the paper.
 
 #![allow(clippy::excessive_precision, reason = "golden values keep all computed digits")]
@@ -6,7 +6,7 @@
 use glam::{DVec2, DVec3};
 use isochore_curve::{
     CrossSectionJet, Curve, Frame, PhCubic, RationalCrossSection, RationalPatch, RationalRotation, TrigonometricCurve,
-    exact_frames, profile_surface_curvature, regularity, safe_cross_section_radius, sweep,
+    exact_frames, regularity, safe_cross_section_radius, sweep, swept_surface_curvature,
 };
 
 fn example_a() -> PhCubic {
@@ -131,7 +131,7 @@ fn curvature_formula_matches_the_patch() {
         };
         let jet = CrossSectionJet { position: evaluate(points), first: evaluate(d), second: evaluate(dd) };
         let frame = cubic.frenet_frame(v).turned(cubic.rotation_to(v));
-        let formula = profile_surface_curvature(&cubic.jet(v), &frame, &jet).unwrap();
+        let formula = swept_surface_curvature(&cubic.jet(v), &frame, &jet).unwrap();
         let patch = patch.jet(u, v).gaussian_curvature().unwrap();
         // The error of the angular velocity of the patch is 1e-5.
         assert!((formula / patch - 1.0).abs() < 1e-3, "{formula}, patch {patch}");
@@ -147,16 +147,16 @@ fn torus_has_its_known_curvature_and_singular_radius() {
     let frame = Frame::new(jet.normal().unwrap(), jet.tangent());
     for angle in [0.0, 1.0, 2.5, std::f64::consts::PI] {
         let (sin, cos) = libm::sincos(angle);
-        let profile = CrossSectionJet {
+        let cross_section = CrossSectionJet {
             position: DVec2::new(minor * cos, minor * sin),
             first: DVec2::new(-minor * sin, minor * cos),
             second: DVec2::new(-minor * cos, -minor * sin),
         };
         // r points to the center. The inner equator is at angle 0 and has negative K.
         let exact = -cos / (minor * (major - minor * cos));
-        let found = profile_surface_curvature(&jet, &frame, &profile).unwrap();
+        let found = swept_surface_curvature(&jet, &frame, &cross_section).unwrap();
         assert!((found - exact).abs() < 1e-14, "{found}, exact {exact}");
-        assert!((regularity(&jet, &frame, profile.position) - (1.0 - minor * cos / major)).abs() < 1e-15);
+        assert!((regularity(&jet, &frame, cross_section.position) - (1.0 - minor * cos / major)).abs() < 1e-15);
     }
     assert!((safe_cross_section_radius(&[jet]) - major).abs() < 1e-14);
     let at_center = CrossSectionJet { position: DVec2::new(2.0, 0.0), first: DVec2::Y, second: DVec2::ZERO };

@@ -72,8 +72,8 @@ pub struct SurfaceJet {
 }
 
 impl SurfaceJet {
-    /// Cosine of the angle between the parameter lines (equation 43). Zero on a profile surface,
-    /// and zero if the patch is singular.
+    /// Cosine of the angle between the parameter lines (equation 43). Zero if the frame is
+    /// rotation-minimizing, and zero if the patch is singular.
     pub fn orthogonality(&self) -> f64 {
         let lengths = self.du.length() * self.dv.length();
         if lengths == 0.0 { 0.0 } else { self.du.dot(self.dv) / lengths }

@@ -1,9 +1,9 @@
 //! Surfaces swept by a rigid planar cross-section along a spine, and their regularity and
 //! curvature.
 //!
-//! With rotation-minimizing frames, these are the *profile surfaces* of the paper: their parameter
-//! lines are lines of curvature, a straight cross-section gives a developable surface, and their
-//! offsets are profile surfaces.
+//! With rotation-minimizing frames, the parameter lines of a swept surface are lines of curvature, a
+//! straight cross-section gives a developable surface, and the offsets are swept surfaces of the
+//! same kind. The paper calls them *profile surfaces*.
 //!
 //! Source: Mäurer and Jüttler 1999, section 2. Correction: the normal (10) and the curvature (11)
 //! of the paper have opposite signs. With the normal (10), K = −κ_u κ_v cos θ.
@@ -79,9 +79,9 @@ pub fn sweep_varying(
     PointGrid { points, rows: stations.len(), columns }
 }
 
-/// Margin of condition (9): 1 − κ n · p for the point p of the cross-section. The profile surface
-/// is regular if the margin is positive. It is also the ratio of the speed of the swept point to
-/// the speed of the spine.
+/// Margin of condition (9): 1 − κ n · p for the point p of the cross-section. The swept surface is
+/// regular if the margin is positive. It is also the ratio of the speed of the swept point to the
+/// speed of the spine.
 pub fn regularity(spine: &CurveJet, frame: &Frame, point: DVec2) -> f64 {
     1.0 - spine.curvature_vector().dot(frame.offset(point))
 }
@@ -110,16 +110,16 @@ impl CrossSectionJet {
         if speed == 0.0 { 0.0 } else { self.first.perp_dot(self.second) / (speed * speed * speed) }
     }
 
-    /// Right-hand normal (c₃′, −c₂′)/|c′|, which is also the normal of the profile surface
+    /// Right-hand normal (c₃′, −c₂′)/|c′|, which is also the normal of the swept surface
     /// (equation 10).
     pub fn normal(&self) -> DVec2 {
         DVec2::new(self.first.y, -self.first.x).normalize_or_zero()
     }
 }
 
-/// Gaussian curvature of the profile surface, K = −κ_u κ_v cos θ (equation 13 with the sign of the
-/// normal (10)). Returns `None` if the surface is singular.
-pub fn profile_surface_curvature(spine: &CurveJet, frame: &Frame, cross_section: &CrossSectionJet) -> Option<f64> {
+/// Gaussian curvature of the surface swept with a rotation-minimizing frame, K = −κ_u κ_v cos θ
+/// (equation 13 with the sign of the normal (10)). Returns `None` if the surface is singular.
+pub fn swept_surface_curvature(spine: &CurveJet, frame: &Frame, cross_section: &CrossSectionJet) -> Option<f64> {
     let margin = regularity(spine, frame, cross_section.position);
     if margin == 0.0 {
         return None;
