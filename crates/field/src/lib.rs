@@ -88,13 +88,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **A field of one's own.** Implement [`MovingField`] and [`Field`], and set each lane from s, ∇s, A and
-//! curl A. The library computes the velocity:
+//! **A field of one's own.** Implement [`Field`], and set each lane from s, ∇s, A and curl A. The library
+//! computes the velocity. [`SteadyField`] makes a stroke of a field that does not change with time; for
+//! one that does, implement [`MovingField`] too:
 //!
 //! ```
 //! # use std::sync::Arc;
 //! use glam::DVec3;
-//! use isochore_field::{Field, FieldBlock, FieldStroke, MovingField, NO_CORE, Profile, Stroke, WeightedPotential};
+//! use isochore_field::{Field, FieldBlock, FieldStroke, NO_CORE, Profile, SteadyField, Stroke, WeightedPotential};
 //! use isochore_mesh::{Aabb, LANES, PointBlock};
 //!
 //! /// A vortex of radius one about the z axis.
@@ -126,25 +127,8 @@
 //!     }
 //! }
 //!
-//! impl MovingField for Vortex {
-//!     fn at(&self, _time: f64) -> Box<dyn Field> {
-//!         Box::new(*self)
-//!     }
-//!
-//!     fn approach_speed(&self) -> f64 {
-//!         0.0
-//!     }
-//!
-//!     fn core_speed(&self) -> f64 {
-//!         1.0
-//!     }
-//!
-//!     fn feature_size(&self) -> f64 {
-//!         1.0
-//!     }
-//! }
-//!
-//! let stroke = Stroke::Field(FieldStroke::new(vec![Arc::new(Vortex)], 0.05)?);
+//! let vortex = SteadyField { field: Vortex, core_speed: 1.0, feature_size: 1.0 };
+//! let stroke = Stroke::Field(FieldStroke::new(vec![Arc::new(vortex)], 0.05)?);
 //! let mut points = [0.3 * DVec3::X, 2.0 * DVec3::X];
 //! stroke.advect(&mut points);
 //! assert!(points[0].y > 0.1 && (points[0].length() - 0.3).abs() < 1e-6);
@@ -198,8 +182,8 @@ pub use deform::{
 pub use fields::{
     BodyTwist, Bone, Field, FieldBlock, JointedTool, JointedToolError, Mask, MaskError, MirrorPlane, MovingField,
     MovingTool, NO_CORE, Pin, Pose, Posture, Profile, Region, RigidField, Ring, RingError, RingShape, ScalarBlock,
-    Strip, StripError, StripMotion, StripShape, StripSpine, Tool, ToolError, UnknownProfile, VelocityBlock, VertexMask,
-    WeightedPotential, rotation_from_vector,
+    SteadyField, Strip, StripError, StripMotion, StripShape, StripSpine, Tool, ToolError, UnknownProfile,
+    VelocityBlock, VertexMask, WeightedPotential, rotation_from_vector,
 };
 pub use flow::{
     AdvectError, AxisError, Bend, FieldStroke, FieldStrokeError, JacobianRange, MaskedError, Move, MoveError,

@@ -8,7 +8,7 @@ use std::{error::Error, sync::Arc};
 use glam::DVec3;
 use isochore_examples::{relative_flux, save_mesh};
 use isochore_field::{
-    DeformOptions, Field, FieldBlock, FieldStroke, MovingField, NO_CORE, Stroke, WeightedPotential, deform,
+    DeformOptions, Field, FieldBlock, FieldStroke, NO_CORE, SteadyField, Stroke, WeightedPotential, deform,
 };
 use isochore_mesh::{Aabb, LANES, NoProgress, PointBlock, primitives};
 
@@ -18,7 +18,7 @@ const ANGULAR: DVec3 = DVec3::new(2.0, 0.0, 0.0);
 
 /// V = curl(s P) with P = −½|x|² ω, the potential of a rigid rotation, and the falloff
 /// s = (1 − |x|²/R²)³.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Swirl;
 
 impl Field for Swirl {
@@ -41,27 +41,14 @@ impl Field for Swirl {
     }
 }
 
-impl MovingField for Swirl {
-    fn at(&self, _time: f64) -> Box<dyn Field> {
-        Box::new(Swirl)
-    }
-    fn approach_speed(&self) -> f64 {
-        0.0
-    }
-    fn core_speed(&self) -> f64 {
-        ANGULAR.length() * RADIUS
-    }
-    fn feature_size(&self) -> f64 {
-        RADIUS
-    }
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let flux = relative_flux(|point| Swirl.velocity(point), DVec3::new(0.3, 0.2, 0.9), 0.5);
     println!("net flux through a sphere: {flux:.1e} of the absolute flux");
 
     let sphere = primitives::icosphere(1.0, 4);
-    let stroke = Stroke::Field(FieldStroke::new(vec![Arc::new(Swirl)], 0.125)?);
+    // The field does not change with time. Its speed is at most that of the rotation at the edge.
+    let field = SteadyField { field: Swirl, core_speed: ANGULAR.length() * RADIUS, feature_size: RADIUS };
+    let stroke = Stroke::Field(FieldStroke::new(vec![Arc::new(field)], 0.125)?);
     // Without the volume lock, the measurements show the flow alone.
     let options = DeformOptions { lock: false, ..DeformOptions::default() };
     let deformed = deform(&sphere, &[stroke], &options, &NoProgress)?;

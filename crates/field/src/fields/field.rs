@@ -88,7 +88,8 @@ pub trait Field: Debug + Send + Sync {
 /// A [`Field`] that changes over a stroke, whose time runs from 0 to 1.
 ///
 /// Velocities are per unit of this time. The field must depend smoothly on time; where a motion
-/// changes abruptly, a new stroke or leg of a stroke begins.
+/// changes abruptly, a new stroke or leg of a stroke begins. For a field that does not change, use
+/// [`SteadyField`](crate::SteadyField).
 pub trait MovingField: Any + Debug + Send + Sync {
     /// The field at `time`.
     fn at(&self, time: f64) -> Box<dyn Field>;
