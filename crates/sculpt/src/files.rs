@@ -20,6 +20,7 @@
 
 mod csv_table;
 mod error;
+mod similar_name;
 
 use std::{
     path::{Path, PathBuf},
@@ -93,7 +94,7 @@ type Resolve<'r, 'a> = &'r dyn Fn(&str) -> Option<NamedFile<'a>>;
 fn load_curves(recipe: &mut Recipe, resolve: Resolve<'_, '_>) -> Result<(), LoadError> {
     let names: Vec<String> = recipe.curve_names().into_iter().map(str::to_owned).collect();
     for name in names {
-        let failed = |recipe: &Recipe, problem| LoadError::new(recipe.curve_key(&name), &name, problem);
+        let failed = |recipe: &Recipe, problem| LoadError::new(&recipe.curve_key(&name), &name, problem);
         let points = table(&name, resolve, &[3, 6]).map_err(|problem| failed(recipe, problem))?;
         let points: Vec<[f64; 3]> = points.rows().iter().map(|row| [row[0], row[1], row[2]]).collect();
         recipe.inline_curve(&name, &points);
@@ -112,7 +113,7 @@ fn load_meshes(recipe: &Recipe, target: TargetMesh, resolve: Resolve<'_, '_>) ->
             None if is_target && target == TargetMesh::Optional => continue,
             file => file,
         };
-        let mesh = mesh(name, file).map_err(|problem| LoadError::new(key, name, problem))?;
+        let mesh = mesh(name, file).map_err(|problem| LoadError::new(&key, name, problem))?;
         meshes.insert(name.to_owned(), mesh);
     }
     Ok(meshes)
@@ -122,7 +123,7 @@ fn load_weights(recipe: &mut Recipe, meshes: &Meshes, resolve: Resolve<'_, '_>) 
     let Some(VertexWeights::File(name)) = &recipe.mask.vertices else { return Ok(()) };
     let target = recipe.target.mesh.as_ref().and_then(|name| meshes.get(name));
     let weights = weights(name, target.map(|mesh| mesh.positions.len()), resolve)
-        .map_err(|problem| LoadError::new("mask.vertices".to_owned(), name, problem))?;
+        .map_err(|problem| LoadError::new("mask.vertices", name, problem))?;
     recipe.mask.vertices = Some(VertexWeights::Values(weights));
     Ok(())
 }

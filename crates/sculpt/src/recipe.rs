@@ -45,6 +45,8 @@ pub use shape::{
 pub use strip::{Radius, SpinePoints, Strip, StripMode};
 pub use stroke::{Bend, Key, Move, Stamp, Stroke, Twist};
 pub use suggestion::Suggestion;
+#[cfg(feature = "io")]
+pub(crate) use suggestion::similarity;
 pub use transform::Transform;
 pub use tree::Override;
 
@@ -273,16 +275,22 @@ impl Recipe {
     /// assert_eq!(error.to_string(), "line 3: target.mish: unknown key; did you mean `mesh`?");
     /// ```
     pub fn parse(text: &str, format: Format, overrides: &[Override]) -> Result<Self, RecipeError> {
-        let mut tree = match format {
-            Format::Toml => Node::from_toml(text)?,
-            Format::Json => Node::from_json(text)?,
-        };
-        for setting in overrides {
-            tree.apply(setting)?;
-        }
+        let tree = Node::parse(text, format, overrides)?;
         let recipe = Self::deserialize(&tree).map_err(|error| tree.located(error))?;
         recipe.validate().map_err(|error| tree.located(error))?;
         Ok(recipe)
+    }
+
+    /// Source location of the key `key` in the text of a recipe, or of the innermost table above it
+    /// that the text contains. Unknown if the text or a setting is malformed.
+    #[cfg(feature = "io")]
+    pub(crate) fn locate(source: crate::Source<'_>, format: Format, key: &str) -> Location {
+        let parse = || {
+            let overrides: Vec<Override> =
+                source.overrides.iter().map(|text| Override::parse(text).ok()).collect::<Option<_>>()?;
+            Node::parse(std::str::from_utf8(source.text).ok()?, format, &overrides).ok()
+        };
+        parse().map_or(Location::Unknown, |tree| tree.locate(key))
     }
 
     /// The recipe as TOML, from which [`parse`](Self::parse) returns the same recipe.

@@ -156,7 +156,7 @@ impl Measures {
     }
 }
 
-/// Source of a report's recipe.
+/// Text of a recipe, with the settings that override it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source<'a> {
     /// Contents of the recipe's file.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use isochore_mesh::primitives;
 use isochore_sculpt::{
-    Recipe,
+    Recipe, Source,
     files::{FileProblem, LoadError, NamedFile, TargetMesh, load},
     recipe::{Format, SpinePoints, Stroke, VertexWeights},
 };
@@ -100,8 +100,23 @@ fn errors_name_key_file_and_row() {
     }
     let missing = error("king.obj", None);
     assert_eq!(missing.to_string(), "tools.king.shape.mesh: `king.obj` was not passed in");
-    assert!(matches!(missing.problem, FileProblem::NotGiven));
+    assert!(matches!(*missing.problem, FileProblem::NotGiven));
     let absent = error("spine.csv", Some(NamedFile::Path("absent/spine.csv".into())));
     assert_eq!((absent.key.as_str(), absent.path()), ("stroke.1.spine", Path::new("absent/spine.csv")));
     assert_eq!(absent.io_error().unwrap().kind(), std::io::ErrorKind::NotFound);
+}
+
+#[test]
+fn errors_name_the_recipe_and_the_line_of_the_key() {
+    let absent = || error("spine.csv", Some(NamedFile::Path("absent/spine.csv".into())));
+    let message = |overrides: &[String]| {
+        let source = Source { text: TEXT.as_bytes(), overrides };
+        absent().in_recipe(Path::new("press.toml"), source).to_string()
+    };
+    assert!(message(&[]).starts_with("press.toml: line 16: stroke.1.spine: absent/spine.csv: "), "{}", message(&[]));
+    assert!(message(&[]).ends_with("; paths are relative to the recipe"));
+    let setting = ["stroke.1.spine=spine.csv".to_owned()];
+    assert!(message(&setting).starts_with("press.toml: --set stroke.1.spine=spine.csv: stroke.1.spine: "));
+    assert!(message(&["malformed".to_owned()]).starts_with("press.toml: stroke.1.spine: "), "the line is unknown");
+    assert!(!absent().to_string().contains("recipe"), "no file of a recipe is known");
 }

@@ -34,15 +34,21 @@ pub enum Location {
     Override(String),
 }
 
+impl Location {
+    /// Beginning of a message about the value; empty if the location is unknown.
+    pub(crate) fn prefix(&self) -> String {
+        match self {
+            Self::Unknown => String::new(),
+            Self::Line(line) => format!("line {line}: "),
+            Self::Override(text) => format!("--set {text}: "),
+        }
+    }
+}
+
 impl<P: fmt::Display> fmt::Display for RecipeError<P> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let location = match &self.location {
-            Location::Unknown => String::new(),
-            Location::Line(line) => format!("line {line}: "),
-            Location::Override(text) => format!("--set {text}: "),
-        };
         let separator = if self.key.is_empty() { "" } else { ": " };
-        let text = format!("{location}{}{separator}{}", self.key, self.problem);
+        let text = format!("{}{}{separator}{}", self.location.prefix(), self.key, self.problem);
         // Names come from the recipe and may contain any character, but an error is one line.
         text.chars()
             .try_for_each(|c| if c.is_control() { write!(f, "{}", c.escape_default()) } else { write!(f, "{c}") })

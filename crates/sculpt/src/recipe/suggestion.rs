@@ -31,11 +31,16 @@ impl std::fmt::Display for Suggestion {
 /// larger value misses two swapped letters in a short word.
 const LEAST_SIMILARITY: f64 = 0.7;
 
+/// Similarity of two spellings, from 0 to 1. Returns `None` if it is too low to explain a slip.
+pub(crate) fn similarity(word: &str, choice: &str) -> Option<f64> {
+    let similarity = strsim::jaro_winkler(&word.to_lowercase(), &choice.to_lowercase());
+    (similarity >= LEAST_SIMILARITY).then_some(similarity)
+}
+
 fn nearest(word: &str, choices: &[String]) -> Option<String> {
     choices
         .iter()
-        .map(|choice| (strsim::jaro_winkler(&word.to_lowercase(), &choice.to_lowercase()), choice))
-        .filter(|(similarity, _)| *similarity >= LEAST_SIMILARITY)
+        .filter_map(|choice| Some((similarity(word, choice)?, choice)))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, choice)| choice.clone())
 }

@@ -6,6 +6,7 @@ use jsonc_parser::{ParseOptions, ast, common::Ranged, parse_to_ast};
 use toml::de::{DeTable, DeValue};
 
 use super::{
+    Format,
     error::{Location, RecipeError},
     problem::{NoSuchElement, SyntaxProblem},
 };
@@ -123,7 +124,19 @@ impl Lines {
 }
 
 impl Node {
-    pub(crate) fn from_toml(text: &str) -> Result<Self, SyntaxError> {
+    /// Parses the text of a recipe and applies `overrides`.
+    pub(crate) fn parse(text: &str, format: Format, overrides: &[Override]) -> Result<Self, RecipeError> {
+        let mut tree = match format {
+            Format::Toml => Self::from_toml(text)?,
+            Format::Json => Self::from_json(text)?,
+        };
+        for setting in overrides {
+            tree.apply(setting)?;
+        }
+        Ok(tree)
+    }
+
+    fn from_toml(text: &str) -> Result<Self, SyntaxError> {
         let lines = Lines::of(text);
         let table = DeTable::parse(text).map_err(|error| {
             malformed(error.message(), error.span().map_or(Location::Unknown, |span| lines.locate(span.start)))
@@ -131,7 +144,7 @@ impl Node {
         Self::table_from_toml(table.get_ref(), &|offset| lines.locate(offset))
     }
 
-    pub(crate) fn from_json(text: &str) -> Result<Self, SyntaxError> {
+    fn from_json(text: &str) -> Result<Self, SyntaxError> {
         let options = ParseOptions {
             allow_comments: false,
             allow_loose_object_property_names: false,
@@ -222,7 +235,7 @@ impl Node {
     }
 
     /// Replaces the value that the override names.
-    pub(crate) fn apply(&mut self, setting: &Override) -> Result<(), RecipeError<NoSuchElement>> {
+    fn apply(&mut self, setting: &Override) -> Result<(), RecipeError<NoSuchElement>> {
         let location = &setting.value.location;
         let mut node = self;
         for (depth, step) in setting.path.iter().enumerate() {
