@@ -12,6 +12,8 @@ mod folder;
 mod help;
 #[path = "command/interruption.rs"]
 mod interruption;
+#[path = "command/missing_files.rs"]
+mod missing_files;
 #[path = "command/results.rs"]
 mod results;
 #[path = "command/stream.rs"]

@@ -19,6 +19,19 @@ fn prints_help_and_version_on_stdout() {
 }
 
 #[test]
+fn help_of_run_explains_settings_and_paths() {
+    let help = Folder::with(&[]).run(&["run", "--help"]).expect(0).stdout;
+    let words = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in [
+        "may be repeated, as in --set tools.ball.support=0.2 --set stroke.0.tool=ball",
+        "relative to the current folder [default: output.mesh of the recipe]",
+        "such as output.report and output.preview, are relative to its folder",
+    ] {
+        assert!(words.contains(part), "`{part}` is missing in {help}");
+    }
+}
+
+#[test]
 fn help_lists_all_subcommands() {
     let help = Folder::with(&[]).run(&["--help"]).expect(0).stdout;
     for subcommand in SUBCOMMANDS {

@@ -104,7 +104,9 @@ pub unsafe extern "C" fn isochore_run_file(
         let recipe = Recipe::parse(&text, Format::of_path(path), &[]);
         let mut recipe = recipe.map_err(|error| Failure::from(error).in_file(path))?;
         let resolve = |name: &str| Some(NamedFile::Path(files::beside(path, name)));
-        let meshes = files::load(&mut recipe, TargetMesh::Required, &resolve)?;
+        let source = Source { text: text.as_bytes(), overrides: &[] };
+        let meshes =
+            files::load(&mut recipe, TargetMesh::Required, &resolve).map_err(|error| error.in_recipe(path, source))?;
         let loaded = LoadedRecipe { recipe, text: &text, meshes };
         // SAFETY: the caller guarantees it.
         unsafe { loaded.run(&Watcher::new(progress, context), mesh, report) }.map_err(|failure| failure.in_file(path))

@@ -4,6 +4,7 @@
 //! objects and rejects combinations that do not fit.
 
 mod curves;
+mod numbers;
 
 use std::{num::NonZeroUsize, path::PathBuf};
 
@@ -27,7 +28,14 @@ pub struct Arguments {
     pub command: Command,
 
     /// Number of threads [default: all cores]; the results are bitwise identical for any number
-    #[arg(long, global = true, value_name = "N", help_heading = GLOBAL)]
+    #[arg(
+        long,
+        global = true,
+        value_name = "N",
+        help_heading = GLOBAL,
+        value_parser = numbers::threads,
+        allow_negative_numbers = true
+    )]
     pub threads: Option<NonZeroUsize>,
 
     /// Print only errors, warnings and missed promises
@@ -65,16 +73,17 @@ pub enum Command {
 /// Arguments of `isochore run`.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct RunArguments {
-    /// Recipe in TOML, or in JSON if its extension is .json; paths in it are relative to its folder
+    /// Recipe in TOML, or in JSON if its extension is .json. The paths in it, such as output.report
+    /// and output.preview, are relative to its folder
     #[arg(value_name = "RECIPE", value_hint = ValueHint::FilePath)]
     pub recipe: PathBuf,
 
-    /// Deformed mesh (.obj .gltf .glb .ply .stl .off; with --stream the format of the input)
-    /// [default: output.mesh of the recipe]
+    /// Deformed mesh (.obj .gltf .glb .ply .stl .off; with --stream the format of the input),
+    /// relative to the current folder [default: output.mesh of the recipe]
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
 
-    /// Report in JSON [default: output.report of the recipe]
+    /// Report in JSON, relative to the current folder [default: output.report of the recipe]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub report: Option<PathBuf>,
 
@@ -84,7 +93,8 @@ pub struct RunArguments {
     #[arg(long)]
     pub stream: bool,
 
-    /// Override a recipe key, for example tools.ball.support=0.2 or stroke.0.tool=ball
+    /// Override a recipe key; may be repeated, as in --set tools.ball.support=0.2 --set
+    /// stroke.0.tool=ball. Paths stay relative to the recipe
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub settings: Vec<String>,
 }
@@ -106,11 +116,11 @@ pub struct DistanceArguments {
     pub mesh: PathBuf,
 
     /// Number of cells along the longest side of the mesh, without padding
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = numbers::cells, allow_negative_numbers = true)]
     pub resolution: u32,
 
     /// Margin of the grid around the mesh, in model units [default: 2 cells]
-    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = numbers::length, allow_negative_numbers = true)]
     pub padding: Option<f64>,
 
     /// Samples as a NumPy array of f32 with index [z, y, x]; a .json file beside it holds origin,

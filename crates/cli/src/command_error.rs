@@ -1,17 +1,19 @@
 //! Errors of a command.
 
 use std::{
+    error::Error,
     io::{self, Write},
     path::{Path, PathBuf},
 };
 
+use clap::error::{ContextKind, ErrorKind};
 use isochore_mesh::{
     Cancelled,
     io::{PointStreamError, ReadError, WriteError},
 };
 use isochore_sculpt::{
     ReplayError, StreamProblem,
-    files::{CsvError, LoadError},
+    files::{CsvError, FileProblem, LoadError},
     recipe::{Location, RecipeError},
 };
 
@@ -59,8 +61,11 @@ impl CommandError {
 
     /// Turns an error of clap into one line, without its lines about usage.
     pub(crate) fn usage(error: &clap::Error) -> Self {
-        if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
             return Self::Usage("no command given; see `isochore --help`, or start with `isochore demo`".to_owned());
+        }
+        if let Some(text) = invalid_value(error) {
+            return Self::Usage(text);
         }
         let text = error.to_string();
         let paragraphs = text
@@ -96,7 +101,7 @@ impl CommandError {
             | Self::Replay { path, .. }
             | Self::Stream { path, .. }
             | Self::File { path, .. } => Some(path.as_path()),
-            Self::Load(error) => Some(error.path()),
+            Self::Load(error) => Some(load_error_file(error)),
             Self::Table(error) => Some(error.path()),
             Self::ReadMesh(
                 ReadError::UnknownFormat { path } | ReadError::Io { path, .. } | ReadError::Parse { path, .. },
@@ -123,9 +128,38 @@ impl CommandError {
         if let Some(key) = key {
             json["key"] = key.into();
         }
-        if let Self::Recipe { source: RecipeError { location: Location::Line(line), .. }, .. } = self {
+        let location = match self {
+            Self::Recipe { source, .. } => Some(&source.location),
+            Self::Load(error) if is_missing(error) => Some(&error.location),
+            _ => None,
+        };
+        if let Some(Location::Line(line)) = location {
             json["line"] = (*line).into();
         }
         json
     }
+}
+
+/// The recipe if the file that it names does not exist, so that the line is one of this file;
+/// otherwise the file.
+fn load_error_file(error: &LoadError) -> &Path {
+    error.recipe.as_deref().filter(|_| is_missing(error)).unwrap_or_else(|| error.path())
+}
+
+fn is_missing(error: &LoadError) -> bool {
+    matches!(*error.problem, FileProblem::Missing { .. })
+}
+
+/// The option, its value and the problem, if one of the parsers in
+/// [`arguments`](crate::arguments) rejected the value.
+fn invalid_value(error: &clap::Error) -> Option<String> {
+    if error.kind() != ErrorKind::ValueValidation {
+        return None;
+    }
+    // The argument is followed by the name of its value: `--threads <N>`.
+    let argument = error.get(ContextKind::InvalidArg)?.to_string();
+    let option = argument.split_whitespace().next()?;
+    let value = error.get(ContextKind::InvalidValue)?;
+    let problem = error.source()?;
+    Some(format!("{}: {problem}", format!("{option} {value}").trim_end()))
 }

@@ -10,7 +10,7 @@ use isochore_mesh::SelfIntersectionError;
 use isochore_picture::Camera;
 use isochore_sculpt::{
     Meshes, Recipe, Replay, ReplayError, Report, Source,
-    files::{self, NamedFile, TargetMesh},
+    files::{self, LoadError, NamedFile, TargetMesh},
     recipe::{Format, Override, RecipeError},
     replay,
 };
@@ -76,7 +76,17 @@ impl Job {
 
     fn load(&mut self, target: TargetMesh) -> Result<Meshes, CommandError> {
         let resolve = |name: &str| Some(NamedFile::Path(files::beside(&self.path, name)));
-        Ok(files::load(&mut self.recipe, target, &resolve)?)
+        files::load(&mut self.recipe, target, &resolve).map_err(|error| self.load_error(error))
+    }
+
+    /// Text of the recipe, with the settings that override it.
+    pub(crate) fn source(&self) -> Source<'_> {
+        Source { text: &self.text, overrides: &self.settings }
+    }
+
+    /// Adds the recipe and the line of the key to an error of a file that the recipe names.
+    pub(crate) fn load_error(&self, error: LoadError) -> CommandError {
+        error.in_recipe(&self.path, self.source()).into()
     }
 
     /// Path of a file that the recipe calls `name`.
@@ -120,11 +130,10 @@ impl Job {
         self.write_frames(&drafts.frames, &replay, &staging, console)?;
         let write_seconds = start.elapsed().as_secs_f64();
 
-        let source = Source { text: &self.text, overrides: &self.settings };
         // The report describes the mesh as stored, which a format of single precision rounds.
         let measured = written.as_ref().unwrap_or(&replay.deformed.mesh);
         let mut report =
-            Report::new(&self.recipe, source, &replay, measured, console).map_err(|error| match error {
+            Report::new(&self.recipe, self.source(), &replay, measured, console).map_err(|error| match error {
                 SelfIntersectionError::Cancelled(cancelled) => cancelled.into(),
                 error => CommandError::file(&self.path, error),
             })?;

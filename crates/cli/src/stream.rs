@@ -9,9 +9,9 @@ use std::{
 
 use isochore_mesh::{
     Aabb, Monitor,
-    io::{PointStream, PointStreamError},
+    io::{PointStream, PointStreamError, ReadError},
 };
-use isochore_sculpt::{PointFlow, Recipe, Source, StreamReport};
+use isochore_sculpt::{PointFlow, StreamReport, files::LoadError};
 
 use crate::{
     command_error::CommandError,
@@ -34,10 +34,9 @@ pub(crate) fn stream(mut job: Job, console: &Console) -> Result<Outcome, Command
 
     let meshes = job.read_tools()?;
     let needs_bounds = PointFlow::needs_bounds(&job.recipe);
-    let bounds = if needs_bounds { bounds(&input, &job.recipe, console)? } else { Aabb::EMPTY };
+    let bounds = if needs_bounds { bounds(&input, &job, console)? } else { Aabb::EMPTY };
     let flow = PointFlow::new(&job.recipe, &meshes, bounds, console).map_err(|error| job.replay_error(error.into()))?;
-    let source = Source { text: &job.text, overrides: &job.settings };
-    let mut report = StreamReport::new(&job.recipe, source, flow.warnings.clone());
+    let mut report = StreamReport::new(&job.recipe, job.source(), flow.warnings.clone());
     report.seconds.prepare = start.elapsed().as_secs_f64();
 
     let pass = Pass { input: &input, job: &job, flow: &flow, console };
@@ -70,14 +69,25 @@ fn input(job: &Job) -> Result<PathBuf, CommandError> {
     }
 }
 
+/// Opens the points to stream.
+fn open(input: &Path, job: &Job) -> Result<PointStream, CommandError> {
+    PointStream::open(input).map_err(|error| match error {
+        PointStreamError::Read { path, source } => {
+            let name = job.recipe.target.mesh.as_deref().unwrap_or_default();
+            job.load_error(LoadError::new("target.mesh", name, ReadError::Io { path, source }.into()))
+        }
+        error => error.into(),
+    })
+}
+
 /// Bounding box of all points of a file in world space.
-fn bounds(input: &Path, recipe: &Recipe, console: &Console) -> Result<Aabb, CommandError> {
-    let mut stream = PointStream::open(input)?;
+fn bounds(input: &Path, job: &Job, console: &Console) -> Result<Aabb, CommandError> {
+    let mut stream = open(input, job)?;
     stream.copy_before(&mut io::sink())?;
     let (mut bounds, mut points, mut done) = (Aabb::EMPTY, Vec::new(), 0);
     while stream.read_chunk(CHUNK, &mut points)? {
         done += points.len();
-        points = PointFlow::place(recipe, points);
+        points = PointFlow::place(&job.recipe, points);
         bounds = bounds.union(Aabb::of(points.iter().copied()));
         console.check("bounds", done as f64 / stream.count() as f64)?;
     }
@@ -105,7 +115,7 @@ impl Pass<'_> {
     /// Copies the file chunk by chunk and advects its points.
     fn copy(&self, writer: &mut dyn Write, report: &mut StreamReport) -> Result<(), CommandError> {
         let error = |error| self.error(error);
-        let mut stream = PointStream::open(self.input).map_err(error)?;
+        let mut stream = open(self.input, self.job)?;
         stream.copy_before(writer).map_err(error)?;
         let mut points = Vec::new();
         loop {

@@ -4,6 +4,8 @@ use std::{num::NonZeroUsize, path::PathBuf};
 
 use clap::{Args, ValueEnum, ValueHint};
 
+use super::numbers;
+
 /// Arguments of `isochore frames`.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct FramesArguments {
@@ -80,7 +82,7 @@ pub struct SpineArguments {
     pub law: Law,
 
     /// Number of samples between two rows, for the methods ph and mobius [default: 1]
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", value_parser = numbers::samples, allow_negative_numbers = true)]
     pub samples_per_segment: Option<NonZeroUsize>,
 }
 
@@ -138,7 +140,9 @@ fn parse_twist(text: &str) -> Result<Twist, String> {
     match text {
         "none" => Ok(Twist::None),
         "minimal" => Ok(Twist::Minimal),
-        turns => turns.parse().map(Twist::Turns).map_err(|_| "expected none, minimal or a whole number".to_owned()),
+        turns => {
+            turns.parse().map(Twist::Turns).map_err(|_| "give none, minimal or a whole number of turns".to_owned())
+        }
     }
 }
 
@@ -147,6 +151,6 @@ fn parse_vector(text: &str) -> Result<[f64; 3], String> {
         .split(',')
         .map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite()))
         .collect::<Option<_>>()
-        .ok_or("expected three numbers such as 0,0,1")?;
-    numbers.try_into().map_err(|_| "expected three numbers such as 0,0,1".to_owned())
+        .ok_or("give three numbers, such as 0,0,1")?;
+    numbers.try_into().map_err(|_| "give three numbers, such as 0,0,1".to_owned())
 }
