@@ -3,6 +3,7 @@
 
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
+mod clay;
 mod comparison;
 mod memory;
 mod python_peer;
@@ -13,6 +14,7 @@ use std::time::Instant;
 
 use cpu_time::ProcessTime;
 
+pub use clay::{ClayStroke, TARGET, clay_recipe, many_pushes};
 pub use comparison::{Comparison, ROWS_VARIABLE};
 pub use memory::peak_bytes;
 pub use python_peer::{PythonPeer, scratch};

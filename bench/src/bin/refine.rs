@@ -25,7 +25,7 @@ fn main() {
 fn measure(name: &str, stroke: &Stroke, volume: f64) {
     let object = primitives::icosphere(1.0, 6);
     let strokes = std::slice::from_ref(stroke);
-    let refine = RefineOptions { volume, ..RefineOptions::default() };
+    let refine = RefineOptions { volume: Some(volume), ..RefineOptions::default() };
     let options = DeformOptions { refine: Some(refine), lock: false };
     let run = || deform(&object, strokes, &options, &NoProgress).expect("the deformation is not canceled");
     let result = run();

@@ -57,17 +57,44 @@ pub(crate) fn conclude(report: &Report, mesh: Option<&Path>, console: &Console) 
             };
             console.say(format_args!("volume {volume:.9}, relative change {change:+.1e}{before_lock}"));
         }
+        console.say(format_args!("new self-intersections: {} triangles", report.certificate.after_rounding));
     }
     let mut outcome = Outcome::Done;
     for name in report.missed_promises() {
         outcome = Outcome::PromiseMissed;
-        let [before, after] = [&report.before, &report.after].map(|side| side.self_intersecting_triangles);
-        let found = match (name, report.volume_change) {
-            ("volume", Some(change)) => format!("the relative change of volume is {change:+.3e}"),
-            ("volume", None) => "the written mesh does not enclose a volume".to_owned(),
-            _ => format!("{after} triangles intersect others, up from {before}"),
-        };
-        console.warn("promise missed", format_args!("{name}: {found}"));
+        console.warn("promise missed", format_args!("{name}: {}", reason(report, name)));
     }
     outcome
+}
+
+/// The reason why a promise does not hold.
+fn reason(report: &Report, promise: &str) -> String {
+    let certificate = &report.certificate;
+    match promise {
+        "volume" => match report.volume_change {
+            Some(change) => format!("the relative change of volume is {change:+.3e}"),
+            None => "the written mesh does not enclose a volume".to_owned(),
+        },
+        "no_new_self_intersections" if certificate.new_crossings == 0 => format!(
+            "rounding to the single precision of the format makes {} triangles cross; write OBJ or PLY",
+            certificate.after_rounding
+        ),
+        "no_new_self_intersections" => {
+            format!("{} triangles cross others and did not in the target", certificate.after_rounding)
+        }
+        "positive_jacobian" => {
+            let smallest = report.strokes.iter().filter_map(|stroke| stroke.jacobian_min).fold(f64::INFINITY, f64::min);
+            format!("the smallest Jacobian determinant of a stroke is {smallest:.3}")
+        }
+        "lock_within_half_edge" => format!(
+            "the volume lock moved a vertex by {:.2} of the shortest edge at it",
+            report.lock_max_shift_per_edge.unwrap_or_default()
+        ),
+        _ => {
+            let is_stopped = |index: &usize| report.strokes[*index].stopped_at.is_some();
+            let stopped: Vec<String> =
+                (0..report.strokes.len()).filter(is_stopped).map(|index| index.to_string()).collect();
+            format!("stroke {} ended early, before the surface would cross itself", stopped.join(", "))
+        }
+    }
 }

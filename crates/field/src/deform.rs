@@ -1,10 +1,12 @@
 //! The deformation of a mesh by strokes: advect, refine, stamp, lock.
 
 mod balance;
+mod certificate;
 mod curved_triangle;
 mod error;
 mod guard;
 mod lock;
+mod locking;
 mod passage;
 mod passes;
 mod press;
@@ -14,6 +16,7 @@ mod tessellation;
 
 use isochore_mesh::{ClosedMesh, Monitor, Topology, TriMesh, signed_volume};
 
+pub use certificate::Sheets;
 pub use error::DeformError;
 pub use lock::{Lock, lock_part, lock_volume};
 pub use press::PressError;
@@ -21,7 +24,8 @@ pub use receipt::{Note, Receipt, StageSeconds, StrokeReceipt};
 pub use refine::RefineOptions;
 
 use crate::flow::Stroke;
-use guard::prepare_lock;
+use certificate::{Crossings, Input};
+use locking::prepare_lock;
 use passage::{Context, Passage};
 use passes::{Locked, Passes, Unlocked};
 use refine::Criteria;
@@ -36,7 +40,7 @@ use tessellation::Tessellation;
 /// let bare = DeformOptions { refine: None, lock: false };
 /// // A tighter estimate of the facet error than the default.
 /// let fine = DeformOptions {
-///     refine: Some(RefineOptions { volume: 1e-5, ..RefineOptions::default() }),
+///     refine: Some(RefineOptions { volume: Some(1e-5), ..RefineOptions::default() }),
 ///     ..DeformOptions::default()
 /// };
 /// assert!(fine.lock && !bare.lock);
@@ -77,7 +81,11 @@ pub struct Deformed {
 /// The volume of a closed mesh changes by two errors. The error of the time step has order four.
 /// The facet error is that of flat triangles, and refinement keeps its estimate below
 /// [`RefineOptions::volume`]. The lock then corrects the remaining change. An open mesh has no
-/// volume to keep. Self-intersections of the input mesh remain.
+/// volume to keep.
+///
+/// No stroke leaves a crossing that the input mesh did not have. Triangles that would cross are split,
+/// and a stroke that still makes the surface cross itself ends early: [`StrokeReceipt::stopped_at`].
+/// Self-intersections of the input mesh remain.
 ///
 /// The result has the same bits for any number of threads.
 ///
@@ -120,19 +128,20 @@ pub fn deform(
     let criteria = options.refine.as_ref().map(|refine| Criteria::new(refine, &surface, volume));
     let mut strokes = strokes.to_vec();
 
-    let context = Context { criteria: criteria.as_ref(), volume, monitor };
+    let input = Input::new(mesh);
+    let context = Context { input: &input, criteria: criteria.as_ref(), volume, monitor };
     let passage = Passage::through(&mut surface, &mut strokes, &context)?;
     check_range(&surface)?;
     let lock = match volume.filter(|_| options.lock) {
-        Some(volume) => {
-            Some(prepare_lock(&mut surface, since_last_stamp(&strokes), criteria.as_ref(), volume, monitor)?)
-        }
+        Some(volume) => Some(prepare_lock(&surface, volume, &context)?),
         None => None,
     };
     let unlocked = Unlocked::measure(&mut surface, mesh, volume);
     let lock = lock.map(|prepared| Locked::apply(prepared, &mut surface));
+    let moved = surface.triangles_with(|vertex| surface.image[vertex] != surface.rest[vertex]);
+    let crossings = Crossings::of(&surface, &surface.image, &moved, &context)?;
 
-    let passes = Passes { context, is_lock_asked: options.lock, passage, unlocked, lock };
+    let passes = Passes { context, is_lock_asked: options.lock, passage, unlocked, lock, crossings };
     let receipt = passes.receipt(&surface);
     let (mesh, rest) = surface.into_meshes(mesh);
     Ok(Deformed { mesh, rest, strokes, receipt })
@@ -161,12 +170,6 @@ fn check_range(surface: &Tessellation) -> Result<(), DeformError> {
         Some(vertex) => Err(DeformError::Overflow { vertex }),
         None => Ok(()),
     }
-}
-
-/// The strokes that lead from the base of the surface to its image.
-fn since_last_stamp(strokes: &[Stroke]) -> &[Stroke] {
-    let last = strokes.iter().rposition(|stroke| matches!(stroke, Stroke::Stamp(_)));
-    &strokes[last.map_or(0, |last| last + 1)..]
 }
 
 #[cfg(test)]

@@ -176,8 +176,8 @@ mod fields;
 mod flow;
 
 pub use deform::{
-    DeformError, DeformOptions, Deformed, Lock, Note, PressError, Receipt, RefineOptions, StageSeconds, StrokeReceipt,
-    deform, lock_part, lock_volume,
+    DeformError, DeformOptions, Deformed, Lock, Note, PressError, Receipt, RefineOptions, Sheets, StageSeconds,
+    StrokeReceipt, deform, lock_part, lock_volume,
 };
 pub use fields::{
     BodyTwist, Bone, Field, FieldBlock, JointedTool, JointedToolError, Mask, MaskError, MirrorPlane, MovingField,

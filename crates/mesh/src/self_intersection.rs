@@ -64,6 +64,7 @@ pub enum SelfIntersectionError {
 pub struct SelfIntersections {
     pairs: Vec<[u32; 2]>,
     triangles: Vec<u32>,
+    pairs_tested: u64,
 }
 
 impl SelfIntersections {
@@ -102,16 +103,17 @@ impl SelfIntersections {
         let tasks = search.tree.node_pairs(TASKS);
         let chunks = tasks.len().div_ceil(TASKS_PER_CHUNK);
         let done = AtomicUsize::new(0);
-        let found: Vec<Vec<[u32; 2]>> = (tasks.par_chunks(TASKS_PER_CHUNK))
+        let found: Vec<Found> = (tasks.par_chunks(TASKS_PER_CHUNK))
             .map(|tasks| {
-                let pairs = crossings_below(&search, tasks);
+                let found = crossings_below(&search, tasks);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 monitor.check("self-intersections", done as f64 / chunks as f64)?;
-                Ok(pairs)
+                Ok(found)
             })
             .collect::<Result<_, Cancelled>>()?;
 
-        let mut pairs: Vec<[u32; 2]> = (found.into_iter().flatten())
+        let pairs_tested = found.iter().map(|found| found.pairs_tested).sum();
+        let mut pairs: Vec<[u32; 2]> = (found.into_iter().flat_map(|found| found.crossings))
             .map(|slots| {
                 let [a, b] = slots.map(|slot| search.tree.order[slot as usize]);
                 [a.min(b), a.max(b)]
@@ -121,7 +123,7 @@ impl SelfIntersections {
         let mut triangles: Vec<u32> = pairs.iter().flatten().copied().collect();
         triangles.par_sort_unstable();
         triangles.dedup();
-        Ok(Self { pairs, triangles })
+        Ok(Self { pairs, triangles, pairs_tested })
     }
 
     /// Whether no two triangles intersect.
@@ -137,6 +139,11 @@ impl SelfIntersections {
     /// Indices of the triangles that intersect at least one other, in ascending order.
     pub fn triangles(&self) -> &[u32] {
         &self.triangles
+    }
+
+    /// Number of pairs of triangles with overlapping boxes, each of which was tested.
+    pub fn pairs_tested(&self) -> u64 {
+        self.pairs_tested
     }
 
     /// Total area of [`triangles`](Self::triangles), square model units.
@@ -179,23 +186,30 @@ struct Pair {
 #[derive(Debug)]
 struct Waiting([Vec<Pair>; 4]);
 
-/// Returns the intersecting pairs below these pairs of nodes, as positions in the order of the
-/// tree.
+/// Intersecting pairs, as positions in the order of the tree.
+#[derive(Debug, Default)]
+struct Found {
+    crossings: Vec<[u32; 2]>,
+    pairs_tested: u64,
+}
+
+/// Returns the intersecting pairs below these pairs of nodes.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+sse4.1", "aarch64+neon"))]
-fn crossings_below(search: &Search, tasks: &[NodePair]) -> Vec<[u32; 2]> {
-    let (mut crossings, mut stack) = (Vec::new(), Vec::new());
+fn crossings_below(search: &Search, tasks: &[NodePair]) -> Found {
+    let (mut found, mut stack) = (Found::default(), Vec::new());
     let mut candidates = Vec::with_capacity(2 * CANDIDATES);
     let mut waiting = Waiting([const { Vec::new() }; 4]);
     for &task in tasks {
         stack.push(task);
         while search.tree.overlapping_pairs(CANDIDATES, &mut stack, &mut candidates) {
+            found.pairs_tested += candidates.len() as u64;
             search.sort_by_common_corners(&candidates, &mut waiting);
             candidates.clear();
-            search.decide(&mut waiting, LANES, &mut crossings);
+            search.decide(&mut waiting, LANES, &mut found.crossings);
         }
     }
-    search.decide(&mut waiting, 1, &mut crossings);
-    crossings
+    search.decide(&mut waiting, 1, &mut found.crossings);
+    found
 }
 
 impl Search {

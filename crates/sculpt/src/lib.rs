@@ -95,6 +95,6 @@ mod stream_report;
 pub use point_flow::{PointFlow, PointReplay, StreamProblem, replay_points};
 pub use recipe::Recipe;
 pub use replay::{Replay, ReplayError, replay};
-pub use report::{Bounds, Measures, Report, Seconds, Source, StrokeReport};
+pub use report::{Bounds, Certificate, Measures, Report, Seconds, SheetsReport, Source, StrokeReport};
 pub use scene::{BuildToolError, MaskProblem, Meshes, Scene, SceneError, SceneProblem, ShapeProblem, build_tool};
 pub use stream_report::{StreamReport, StreamSeconds};

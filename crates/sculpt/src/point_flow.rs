@@ -111,7 +111,6 @@ impl PointFlow {
         let needs_mesh = [
             ("mask.vertices", recipe.mask.vertices.is_some()),
             ("promise.volume", recipe.promise.volume.is_some()),
-            ("promise.no_new_self_intersections", recipe.promise.no_new_self_intersections),
             ("output.preview", recipe.output.preview.is_some()),
             ("output.frames", recipe.output.frames.is_some()),
         ];

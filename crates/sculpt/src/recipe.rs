@@ -50,7 +50,7 @@ pub(crate) use suggestion::similarity;
 pub use transform::Transform;
 pub use tree::Override;
 
-use defaults::is_default;
+use defaults::{is_default, is_true};
 use tree::Node;
 
 /// A deformation: the target, the tools and strokes, the accuracy, and the outputs.
@@ -145,9 +145,11 @@ impl Default for Integrate {
 pub struct Refine {
     /// False keeps the triangles unchanged.
     pub enabled: bool,
-    /// Largest estimated error of the volume, as a fraction of the volume.
+    /// Largest change of the volume before the lock, as a fraction of the volume. By default
+    /// refinement ends when the lock would move the surface by a tenth of `deviation` on average.
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub volume: f64,
+    #[serde(skip_serializing_if = "is_default")]
+    pub volume: Option<f64>,
     /// Largest distance of an edge's image from a straight line, as a fraction of the longest side
     /// of the target's bounds.
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -161,17 +163,38 @@ pub struct Refine {
 }
 
 /// Properties that the written mesh must have. Promises do not influence the deformation: they are
-/// checked at the end.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// checked at the end. If one does not hold, the exit code is 1, and the output is written.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Promise {
     /// Largest relative change of the volume.
     #[serde(skip_serializing_if = "is_default")]
     pub volume: Option<f64>,
-    /// Whether the written mesh must have at most as many self-intersecting triangles as the
-    /// target.
-    #[serde(skip_serializing_if = "is_default")]
+    /// Whether triangles of the written mesh must not intersect where the target does not.
+    #[serde(skip_serializing_if = "is_true")]
     pub no_new_self_intersections: bool,
+    /// Whether all sampled Jacobian determinants of the strokes must be positive.
+    #[serde(skip_serializing_if = "is_true")]
+    pub positive_jacobian: bool,
+    /// Whether the volume lock must displace each vertex by at most half the shortest edge at it.
+    #[serde(skip_serializing_if = "is_true")]
+    pub lock_within_half_edge: bool,
+    /// Whether every stroke must be complete. A stroke ends early if the surface would otherwise
+    /// cross itself.
+    #[serde(skip_serializing_if = "is_true")]
+    pub strokes_completed: bool,
+}
+
+impl Default for Promise {
+    fn default() -> Self {
+        Self {
+            volume: None,
+            no_new_self_intersections: true,
+            positive_jacobian: true,
+            lock_within_half_edge: true,
+            strokes_completed: true,
+        }
+    }
 }
 
 /// The final correction of the volume.

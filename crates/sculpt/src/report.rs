@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use isochore_field::{JacobianRange, Receipt};
 use isochore_mesh::{ClosedMesh, Monitor, SelfIntersectionError, SelfIntersections, TriMesh};
+use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -12,11 +14,6 @@ use crate::{
     recipe::{Promise, Recipe},
     replay::Replay,
 };
-
-/// Name of the promise on the change of the volume.
-const VOLUME: &str = "volume";
-/// Name of the promise on self-intersections.
-const NO_NEW_SELF_INTERSECTIONS: &str = "no_new_self_intersections";
 
 /// Measurements of a replay, and whether the promises hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -32,12 +29,17 @@ pub struct Report {
     pub volume_change_before_lock: Option<f64>,
     /// Largest displacement of a vertex by the volume lock, model units; null without a lock.
     pub lock_max_shift: Option<f64>,
+    /// Largest ratio of a displacement by the volume lock to the shortest edge at the vertex; null
+    /// without a lock.
+    pub lock_max_shift_per_edge: Option<f64>,
     /// Largest displacement of a vertex, model units.
     pub max_displacement: f64,
     /// Vertices that the strokes moved, including inserted ones.
     pub moved_vertices: usize,
     /// Vertices that refinement inserted.
     pub inserted_vertices: usize,
+    /// Triangles that cross others although the target's triangles do not.
+    pub certificate: Certificate,
     /// Promises of the recipe by name, and whether they hold.
     pub promises: BTreeMap<String, bool>,
     /// Strokes in order.
@@ -73,6 +75,28 @@ pub struct Measures {
     pub self_intersecting_triangles: usize,
     /// Total area of the self-intersecting triangles, square model units.
     pub self_intersecting_area: f64,
+    /// Fraction of the triangles whose smallest angle is below 5 degrees.
+    pub angle_below_5_degrees: f64,
+}
+
+/// Search for triangles that cross although the target's triangles that contain them do not.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Certificate {
+    /// Number of such triangles in the mesh in memory.
+    pub new_crossings: usize,
+    /// Pairs of triangles with overlapping boxes that were tested.
+    pub pairs_tested: u64,
+    /// Number of such triangles in the written mesh, with the rounding of its format.
+    pub after_rounding: usize,
+}
+
+/// Closest sheets where a stroke ended, because they would have crossed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetsReport {
+    /// Distance between the sheets, model units.
+    pub gap: f64,
+    /// Point midway between them, model units.
+    pub at: [f64; 3],
 }
 
 /// Bounding box, model units.
@@ -104,6 +128,13 @@ pub struct StrokeReport {
     pub jacobian_max: Option<f64>,
     /// Signed relative change of the volume by the stroke; null for an open target.
     pub volume_change: Option<f64>,
+    /// Fraction of the stroke's path, from 0 to 1, at which it ended because the surface would have
+    /// crossed itself; absent for a complete stroke.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stopped_at: Option<f64>,
+    /// Sheets that would have crossed; absent for a complete stroke.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sheets: Option<SheetsReport>,
 }
 
 /// Wall-clock time of each stage, seconds.
@@ -152,6 +183,7 @@ impl Measures {
             bounds: Bounds { min: bounds.min.to_array(), max: bounds.max.to_array() },
             self_intersecting_triangles: crossings.triangles().len(),
             self_intersecting_area: crossings.area(mesh),
+            angle_below_5_degrees: fraction_of_slivers(mesh),
         })
     }
 }
@@ -195,16 +227,25 @@ impl Report {
             jacobian_min: receipt.jacobian.map(|range| range.min),
             jacobian_max: receipt.jacobian.map(|range| range.max),
             volume_change: receipt.volume_change,
+            stopped_at: receipt.stopped_at,
+            sheets: receipt.sheets.map(|sheets| SheetsReport { gap: sheets.gap, at: sheets.at.to_array() }),
         });
+        let certificate = Certificate {
+            new_crossings: receipt.new_crossings,
+            pairs_tested: receipt.pairs_tested,
+            after_rounding: crossings_after_rounding(replay, written, &after, monitor)?,
+        };
         let notes = receipt.notes.iter().map(ToString::to_string);
         Ok(Self {
             volume_change,
             volume_change_before_lock: relative_change(receipt.volume_before, receipt.volume_before_lock),
             lock_max_shift: receipt.lock_max_shift,
+            lock_max_shift_per_edge: receipt.lock_max_shift_per_edge,
             max_displacement: receipt.max_displacement,
             moved_vertices: receipt.moved_vertices,
             inserted_vertices: receipt.inserted_vertices,
-            promises: check_promises(&recipe.promise, volume_change, &before, &after),
+            promises: check_promises(&recipe.promise, volume_change, &certificate, receipt),
+            certificate,
             strokes: strokes.collect(),
             seconds: Seconds {
                 distance: replay.scene.distance_seconds,
@@ -240,19 +281,63 @@ fn relative_change(before: Option<f64>, after: Option<f64>) -> Option<f64> {
     (before != 0.0).then(|| (after - before) / before.abs())
 }
 
+/// The promises that the recipe asks for, by their keys, and whether they hold.
 fn check_promises(
     promise: &Promise,
     volume_change: Option<f64>,
-    before: &Measures,
-    after: &Measures,
+    certificate: &Certificate,
+    receipt: &Receipt,
 ) -> BTreeMap<String, bool> {
-    let volume = promise.volume.map(|limit| {
+    let strokes = &receipt.strokes;
+    let is_positive = |range: JacobianRange| range.min > 0.0;
+    let shift = receipt.lock_max_shift_per_edge.unwrap_or(0.0);
+    let asked = [
         // An open mesh has no volume, so it breaks the promise.
-        (VOLUME.to_owned(), volume_change.is_some_and(|change| change.abs() <= limit))
-    });
-    let intersections = promise.no_new_self_intersections.then(|| {
-        let holds = after.self_intersecting_triangles <= before.self_intersecting_triangles;
-        (NO_NEW_SELF_INTERSECTIONS.to_owned(), holds)
-    });
-    volume.into_iter().chain(intersections).collect()
+        ("volume", promise.volume.map(|limit| volume_change.is_some_and(|change| change.abs() <= limit))),
+        ("no_new_self_intersections", promise.no_new_self_intersections.then_some(certificate.after_rounding == 0)),
+        (
+            "positive_jacobian",
+            promise.positive_jacobian.then(|| strokes.iter().filter_map(|stroke| stroke.jacobian).all(is_positive)),
+        ),
+        ("lock_within_half_edge", promise.lock_within_half_edge.then_some(shift <= 0.5)),
+        (
+            "strokes_completed",
+            promise.strokes_completed.then(|| strokes.iter().all(|stroke| stroke.stopped_at.is_none())),
+        ),
+    ];
+    asked.into_iter().filter_map(|(name, holds)| Some((name.to_owned(), holds?))).collect()
+}
+
+/// New crossings of the written mesh. Those that rounding adds are counted by the triangles that
+/// intersect others, because a file does not tell the parts of the target's triangles.
+fn crossings_after_rounding(
+    replay: &Replay,
+    written: &TriMesh,
+    after: &Measures,
+    monitor: &dyn Monitor,
+) -> Result<usize, SelfIntersectionError> {
+    let deformed = &replay.deformed;
+    let new_crossings = deformed.receipt.new_crossings;
+    if after.self_intersecting_triangles == 0 || written.positions == deformed.mesh.positions {
+        return Ok(new_crossings);
+    }
+    let exact = SelfIntersections::of(&deformed.mesh, monitor)?.triangles().len();
+    Ok((new_crossings + after.self_intersecting_triangles).saturating_sub(exact))
+}
+
+/// Fraction of the triangles whose smallest angle is below five degrees.
+fn fraction_of_slivers(mesh: &TriMesh) -> f64 {
+    // The smallest angle is opposite to the shortest side; its sine is twice the area over the
+    // product of the other two sides.
+    let limit = libm::sin(5_f64.to_radians());
+    let is_sliver = |index: &usize| {
+        let [a, b, c] = mesh.corners(*index);
+        let mut sides = [a.distance(b), b.distance(c), c.distance(a)];
+        sides.sort_unstable_by(f64::total_cmp);
+        let sine = (b - a).cross(c - a).length() / (sides[1] * sides[2]);
+        // A triangle without area has an angle of zero.
+        sine.is_nan() || sine < limit
+    };
+    let count = (0..mesh.triangles.len()).into_par_iter().filter(is_sliver).count();
+    count as f64 / mesh.triangles.len().max(1) as f64
 }

@@ -87,7 +87,7 @@ fn defaults_are_those_that_are_promised() {
     let recipe = read("recipe = 1\ntarget = { mesh = \"a.obj\" }").unwrap();
     assert_eq!(recipe.integrate.step, 0.125);
     assert!(recipe.refine.enabled && recipe.volume.lock);
-    assert_eq!((recipe.refine.volume, recipe.refine.deviation), (1e-4, 1e-3));
+    assert_eq!((recipe.refine.volume, recipe.refine.deviation), (None, 1e-3));
     assert_eq!((recipe.refine.max_edge, recipe.refine.max_triangles), (None, 2_000_000));
     assert_eq!((recipe.promise.volume, recipe.promise.no_new_self_intersections), (None, false));
 }

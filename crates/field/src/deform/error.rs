@@ -2,7 +2,7 @@
 
 use isochore_mesh::{Cancelled, MeshError};
 
-use super::PressError;
+use super::{PressError, press::PressStop};
 
 /// Errors of [`deform()`](crate::deform()).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -30,4 +30,14 @@ pub enum DeformError {
     /// The volume of the input mesh is not finite.
     #[error("the volume is beyond the range of f64; coordinates are too large")]
     VolumeOverflow,
+}
+
+impl DeformError {
+    /// The error of a stamp, stroke number `stroke`.
+    pub(super) fn of_stamp(stroke: usize, stop: PressStop) -> Self {
+        match stop {
+            PressStop::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            PressStop::Stamp(source) => Self::Stamp { stroke, source },
+        }
+    }
 }

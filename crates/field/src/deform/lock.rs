@@ -38,7 +38,20 @@ pub struct Lock {
 /// # Panics
 /// If an index is out of range, or `rest` is not as long as `image`.
 pub fn lock_volume(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], volume: f64) -> Option<Lock> {
-    let directions = directions(rest, image, triangles)?;
+    lock_with_weights(rest, image, triangles, &vec![1.0; image.len()], volume)
+}
+
+/// Like [`lock_volume`], with displacements multiplied by a weight for each vertex. A vertex of weight
+/// zero stays.
+pub(crate) fn lock_with_weights(
+    rest: &[DVec3],
+    image: &mut [DVec3],
+    triangles: &[[u32; 3]],
+    weights: &[f64],
+    volume: f64,
+) -> Option<Lock> {
+    let mut directions = directions(rest, image, triangles)?;
+    directions.iter_mut().zip(weights).for_each(|(direction, &weight)| *direction *= weight);
     let unlocked = image.to_vec();
     balance(image, &directions, triangles, volume)?;
     Some(Lock::between(&unlocked, image, triangles))

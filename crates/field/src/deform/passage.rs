@@ -5,9 +5,11 @@ use web_time::Instant;
 
 use super::{
     DeformError, StageSeconds,
-    guard::{StepChoice, choose_step, refine_to_volume},
-    press::{PressStop, Pressed, press},
-    refine::{Criteria, Refined, Refinement, estimate_facet_error, refine, resolve_field, untangle},
+    certificate::{Crossings, HALVINGS, Input, Rewound, Verdict, certify, closest_sheets,
+        crossing_place, rewind},
+    guard::{StepChoice, WORTHWHILE, choose_step, refine_to_volume},
+    press::{Pressed, press},
+    refine::{Criteria, Refined, Refinement, estimate_facet_error, refine, resolve_field},
     tessellation::{Tessellation, count_different},
 };
 use crate::flow::{Stamp, Stroke};
@@ -15,6 +17,8 @@ use crate::flow::{Stamp, Stroke};
 /// Conditions that are the same for all passes over a mesh.
 #[derive(Clone, Copy)]
 pub(super) struct Context<'a> {
+    /// The input mesh, whose crossings are not new.
+    pub(super) input: &'a Input<'a>,
     /// When to split, or `None` to keep the triangles.
     pub(super) criteria: Option<&'a Criteria>,
     /// Volume at rest, or `None` for an open mesh.
@@ -28,9 +32,30 @@ pub(super) struct Passage {
     pub(super) strokes: Vec<StrokePass>,
     /// Estimated signed volume that the flat triangles lack.
     pub(super) facet_error: f64,
-    /// Wall time of untangling, seconds.
-    pub(super) untangling: f64,
+    /// Volume of the base of the current phase.
+    base_volume: f64,
+    /// Change of the volume since the base that the facet error does not explain.
+    time_error: f64,
+    /// Pairs of triangles that the certificates tested.
+    pub(super) pairs_tested: u64,
+    /// Wall time of the last refinement for the volume, seconds.
+    pub(super) finishing: f64,
 }
+
+/// Result of one attempt at a stroke.
+#[derive(Debug)]
+struct Attempt {
+    pass: StrokePass,
+    verdict: Verdict,
+    /// Estimated signed volume that the flat triangles lack.
+    facet_error: f64,
+    /// Change of the volume since the base that the facet error does not explain.
+    time_error: f64,
+}
+
+/// Fraction of the asked change of the volume that the time step of one stroke may cause. A larger value
+/// leaves less for the facets; a smaller value takes finer steps.
+const TIME_FRACTION: f64 = 0.25;
 
 /// Result of one stroke.
 #[derive(Debug, Clone, Copy)]
@@ -41,6 +66,8 @@ pub(super) struct StrokePass {
     /// Vertices that the stroke moved.
     pub(super) moved: usize,
     pub(super) seconds: StageSeconds,
+    /// Where the stroke ended, if it would have made the surface cross itself.
+    pub(super) rewound: Option<Rewound>,
     /// Volume of the image after the stroke, or `None` for an open mesh.
     pub(super) volume: Option<f64>,
 }
@@ -71,7 +98,9 @@ impl Passage {
             passage.add(flow(surface, flows, context)?);
             if let Some(stamp) = stamp {
                 let index = passage.strokes.len();
-                passage.strokes.push(imprint(surface, stamp, index, context)?);
+                let (pass, pairs_tested) = imprint(surface, stamp, index, context)?;
+                passage.strokes.push(pass);
+                passage.pairs_tested += pairs_tested;
             }
         }
         Ok(passage)
@@ -80,30 +109,143 @@ impl Passage {
     fn add(&mut self, other: Self) {
         self.strokes.extend(other.strokes);
         self.facet_error += other.facet_error;
-        self.untangling += other.untangling;
+        self.time_error += other.time_error;
+        self.pairs_tested += other.pairs_tested;
+        self.finishing += other.finishing;
     }
 }
 
 /// Advects the surface through `strokes`, which must not include a stamp.
 fn flow(surface: &mut Tessellation, strokes: &mut [Stroke], context: &Context<'_>) -> Result<Passage, Cancelled> {
-    let Context { criteria, monitor, .. } = *context;
-    let mut passage = Passage::default();
     let volume = surface.image_volume();
+    let mut passage = Passage { base_volume: volume, ..Passage::default() };
     for index in 0..strokes.len() {
-        let step = choose_step(&mut strokes[index], surface, monitor)?;
-        let (stroke, facet_error) = advect_last(surface, &strokes[..=index], step, context)?;
-        passage.strokes.push(stroke);
-        passage.facet_error = facet_error;
+        passage.add_stroke(surface, &mut strokes[..=index], context)?;
     }
-    if let Some(criteria) = criteria {
-        passage.facet_error = refine_to_volume(surface, strokes, criteria, volume, passage.facet_error, monitor)?;
+    if let Some(criteria) = context.criteria {
         let begin = Instant::now();
-        if untangle(surface, strokes, criteria, monitor)?.inserted > 0 {
-            passage.facet_error = estimate_facet_error(surface, strokes, monitor)?.volume;
+        let coarse = surface.clone();
+        let facet_error = refine_to_volume(surface, strokes, criteria, volume, passage.facet_error, context.monitor)?;
+        let verdict = certify(surface, strokes, context)?;
+        passage.pairs_tested += verdict.pairs_tested;
+        if verdict.crossings.is_empty() {
+            passage.facet_error = facet_error;
+        } else {
+            // Finer triangles cross, and the coarser ones do not.
+            *surface = coarse;
         }
-        passage.untangling = begin.elapsed().as_secs_f64();
+        passage.finishing = begin.elapsed().as_secs_f64();
     }
     Ok(passage)
+}
+
+impl Passage {
+    /// Advects the surface through the last of `strokes`. If new crossings remain, truncates the stroke
+    /// to its last moment without them.
+    fn add_stroke(
+        &mut self,
+        surface: &mut Tessellation,
+        strokes: &mut [Stroke],
+        context: &Context<'_>,
+    ) -> Result<(), Cancelled> {
+        let Some(last) = strokes.len().checked_sub(1) else { return Ok(()) };
+        let start = surface.clone();
+        let step = choose_step(&mut strokes[last], surface, context.monitor)?;
+        let mut attempt = self.attempt(surface, strokes, step, context)?;
+        if let Some(asked) = context.criteria.and_then(Criteria::asked_volume) {
+            attempt = self.refine_step(surface, &start, strokes, attempt, asked, context)?;
+        }
+        let Attempt { mut pass, verdict, facet_error, time_error } = attempt;
+        (self.facet_error, self.time_error) = (facet_error, time_error);
+        if !verdict.crossings.is_empty() {
+            let rewound = rewind(surface, strokes, &verdict.crossings, context)?;
+            strokes[last] = strokes[last].truncated(rewound.stopped_at);
+            pass = self.stop(surface, start, strokes, pass, context)?;
+            pass.rewound = Some(rewound);
+        }
+        self.strokes.push(pass);
+        Ok(())
+    }
+
+    /// Advects the surface through the last of `strokes`, which is truncated to a moment at which
+    /// `surface` does not cross. `start` is the surface before the stroke, and `whole` the result of the
+    /// whole stroke.
+    fn stop(
+        &mut self,
+        surface: &mut Tessellation,
+        start: Tessellation,
+        strokes: &[Stroke],
+        whole: StrokePass,
+        context: &Context<'_>,
+    ) -> Result<StrokePass, Cancelled> {
+        // From the start again, because splits for the whole stroke were in vain.
+        let split = std::mem::replace(surface, start);
+        let Action::Flow(step) = whole.action else { return Ok(whole) };
+        let Attempt { pass, verdict, facet_error, .. } = self.attempt(surface, strokes, step, context)?;
+        if verdict.crossings.is_empty() {
+            self.facet_error = facet_error;
+            return Ok(pass);
+        }
+        *surface = split;
+        surface.advect_again(&strokes[..strokes.len() - 1], context.monitor)?;
+        let before = surface.image.clone();
+        surface.advect_again(strokes, context.monitor)?;
+        surface.take_unchecked();
+        self.facet_error = estimate_facet_error(surface, strokes, context.monitor)?.volume;
+        let moved = count_different(&before, &surface.image);
+        Ok(StrokePass { moved, volume: context.volume.map(|_| surface.image_volume()), ..whole })
+    }
+
+    /// Advects the surface through the last of `strokes`, and searches for new crossings.
+    fn attempt(
+        &mut self,
+        surface: &mut Tessellation,
+        strokes: &[Stroke],
+        step: StepChoice,
+        context: &Context<'_>,
+    ) -> Result<Attempt, Cancelled> {
+        let (mut pass, mut facet_error) = advect_last(surface, strokes, step, context)?;
+        let begin = Instant::now();
+        let verdict = certify(surface, strokes, context)?;
+        pass.refinement.add(&verdict.refinement);
+        self.pairs_tested += verdict.pairs_tested;
+        if verdict.refinement.inserted > 0 {
+            facet_error = estimate_facet_error(surface, strokes, context.monitor)?.volume;
+            pass.volume = context.volume.map(|_| surface.image_volume());
+        }
+        pass.seconds.refine += begin.elapsed().as_secs_f64();
+        let time_error = surface.image_volume() + facet_error - self.base_volume;
+        Ok(Attempt { pass, verdict, facet_error, time_error })
+    }
+
+    /// Halves the time step of the last of `strokes` while it changes the volume by more than a fraction
+    /// of the `asked` change. `start` is the surface before the stroke.
+    fn refine_step(
+        &mut self,
+        surface: &mut Tessellation,
+        start: &Tessellation,
+        strokes: &mut [Stroke],
+        mut best: Attempt,
+        asked: f64,
+        context: &Context<'_>,
+    ) -> Result<Attempt, Cancelled> {
+        let last = strokes.len() - 1;
+        let error_of = |attempt: &Attempt, before: f64| (attempt.time_error - before).abs();
+        while let Action::Flow(step) = best.pass.action
+            && error_of(&best, self.time_error) > TIME_FRACTION * asked
+            && let Some(finer) = step.halved(&strokes[last])
+        {
+            let (finer, step) = finer;
+            let kept = (std::mem::replace(surface, start.clone()), std::mem::replace(&mut strokes[last], finer));
+            let next = self.attempt(surface, strokes, step, context)?;
+            if error_of(&next, self.time_error) > WORTHWHILE * error_of(&best, self.time_error) {
+                (*surface, strokes[last]) = kept;
+                break;
+            }
+            best = next;
+        }
+        Ok(best)
+    }
 }
 
 /// Advects the surface through the last of `strokes`, with refinement before and after. Returns the
@@ -114,7 +256,7 @@ fn advect_last(
     step: StepChoice,
     context: &Context<'_>,
 ) -> Result<(StrokePass, f64), Cancelled> {
-    let Context { criteria, volume, monitor } = *context;
+    let Context { criteria, volume, monitor, .. } = *context;
     let (past, stroke) = (&strokes[..strokes.len() - 1], &strokes[strokes.len() - 1]);
     let begin = Instant::now();
     let resolved = match criteria {
@@ -142,33 +284,69 @@ fn advect_last(
             refine: (resolve_end - begin + (end - advect_end)).as_secs_f64(),
             lock: 0.0,
         },
+        rewound: None,
         volume: volume.map(|_| surface.image_volume()),
     };
     Ok((pass, facet_error))
 }
 
-/// Presses a stamp, stroke number `index`, into the image.
+/// Presses a stamp, stroke number `index`, into the image. A stamp that makes the surface cross itself
+/// ends at its last moment without new crossings.
 fn imprint(
     surface: &mut Tessellation,
     stamp: &Stamp,
     index: usize,
     context: &Context<'_>,
-) -> Result<StrokePass, DeformError> {
+) -> Result<(StrokePass, u64), DeformError> {
     let begin = Instant::now();
-    let before = surface.image.clone();
-    let Pressed { refinement, has_touched, is_through } = press(surface, stamp, context.criteria, context.monitor)
-        .map_err(|stop| match stop {
-            PressStop::Cancelled(cancelled) => DeformError::Cancelled(cancelled),
-            PressStop::Stamp(source) => DeformError::Stamp { stroke: index, source },
-        })?;
-    let known = before.len();
-    let moved =
-        count_different(&before, &surface.image) + count_different(&surface.rest[known..], &surface.image[known..]);
-    Ok(StrokePass {
+    let start = surface.clone();
+    let mut pairs_tested = 0;
+    let mut press_until = |surface: &mut Tessellation, time: f64| -> Result<(Pressed, Crossings), DeformError> {
+        let pressed = press(surface, &stamp.truncated(time), context.criteria, context.monitor)
+            .map_err(|stop| DeformError::of_stamp(index, stop))?;
+        let before = |vertex: usize| start.image.get(vertex).unwrap_or(&surface.rest[vertex]);
+        let moved = surface.triangles_with(|vertex| surface.image[vertex] != *before(vertex));
+        surface.take_unchecked();
+        let crossings = Crossings::of(surface, &surface.image, &moved, context)?;
+        pairs_tested += crossings.pairs_tested;
+        Ok((pressed, crossings))
+    };
+    let (mut pressed, mut crossings) = press_until(surface, 1.0)?;
+    let mut rewound = None;
+    if !crossings.is_empty() {
+        let (mut clean, mut crossed) = (0.0, 1.0);
+        let mut best = start.clone();
+        let mut place = crossing_place(surface, &surface.image, crossings.pairs[0]);
+        for _ in 0..HALVINGS {
+            let time = 0.5 * (clean + crossed);
+            *surface = start.clone();
+            let shorter;
+            (shorter, crossings) = press_until(surface, time)?;
+            if crossings.is_empty() {
+                (clean, pressed) = (time, shorter);
+                best = surface.clone();
+            } else {
+                crossed = time;
+                place = crossing_place(surface, &surface.image, crossings.pairs[0]);
+            }
+        }
+        if clean == 0.0 {
+            pressed = Pressed::default();
+        }
+        *surface = best;
+        rewound = Some(Rewound { stopped_at: clean, sheets: closest_sheets(surface, &surface.image, place) });
+    }
+    let known = start.image.len();
+    let moved = count_different(&start.image, &surface.image)
+        + count_different(&surface.rest[known..], &surface.image[known..]);
+    let Pressed { refinement, has_touched, is_through } = pressed;
+    let pass = StrokePass {
         action: Action::Stamp { has_touched, is_through },
         refinement,
         moved,
         seconds: StageSeconds { advect: begin.elapsed().as_secs_f64(), ..StageSeconds::default() },
+        rewound,
         volume: context.volume.map(|_| surface.image_volume()),
-    })
+    };
+    Ok((pass, pairs_tested))
 }

@@ -5,7 +5,8 @@ use isochore_mesh::{TriMesh, signed_volume};
 
 use super::{
     Lock, Note, Receipt, StageSeconds, StrokeReceipt,
-    guard::LockPreparation,
+    certificate::Crossings,
+    locking::LockPreparation,
     passage::{Action, Context, Passage, StrokePass},
     tessellation::{Tessellation, count_different},
 };
@@ -26,6 +27,8 @@ pub(super) struct Passes<'a> {
     pub(super) passage: Passage,
     pub(super) unlocked: Unlocked,
     pub(super) lock: Option<Locked>,
+    /// New crossings of the result.
+    pub(super) crossings: Crossings,
 }
 
 /// Measures of the surface before the lock.
@@ -42,10 +45,8 @@ pub(super) struct Unlocked {
 pub(super) struct Locked {
     /// The displacement, or `None` if the lock found nothing to correct.
     shift: Option<Lock>,
-    /// Triangles that it makes cross.
+    /// Triangles that it would make cross, which is why it was skipped.
     crossing: usize,
-    /// The facet error after refinement for the lock, if any was needed.
-    facet_error: Option<f64>,
     seconds: f64,
 }
 
@@ -62,12 +63,12 @@ impl Unlocked {
 impl Locked {
     /// Moves the vertices to their locked positions.
     pub(super) fn apply(prepared: LockPreparation, surface: &mut Tessellation) -> Self {
-        let LockPreparation { facet_error, crossing, locked, seconds } = prepared;
+        let LockPreparation { crossing, locked, seconds } = prepared;
         let shift = locked.map(|(image, lock)| {
             surface.image = image;
             lock
         });
-        Self { shift, crossing, facet_error, seconds }
+        Self { shift, crossing, seconds }
     }
 }
 
@@ -75,16 +76,19 @@ impl Passes<'_> {
     /// The receipt of the deformation that led to `surface`.
     pub(super) fn receipt(&self, surface: &Tessellation) -> Receipt {
         let volume_before = self.context.volume;
-        let facet_error = self.lock.and_then(|lock| lock.facet_error).unwrap_or(self.passage.facet_error);
+        let facet_error = self.passage.facet_error;
         Receipt {
             volume_before,
             volume_before_lock: self.unlocked.volume,
             volume_after: volume_before.map(|_| signed_volume(&surface.image, &surface.triangles)),
             facet_error: volume_before.map(|_| facet_error),
             lock_max_shift: self.lock.and_then(|lock| lock.shift).map(|shift| shift.max_shift),
+            lock_max_shift_per_edge: self.lock.and_then(|lock| lock.shift).map(|shift| shift.max_shift_per_edge),
             max_displacement: max_distance(&surface.rest, &surface.image),
             moved_vertices: self.unlocked.moved_vertices,
             inserted_vertices: self.unlocked.inserted_vertices,
+            new_crossings: self.crossings.triangles().len(),
+            pairs_tested: self.passage.pairs_tested + self.crossings.pairs_tested,
             strokes: self.stroke_receipts(),
             seconds: self.seconds(),
             notes: self.notes(facet_error),
@@ -103,6 +107,8 @@ impl Passes<'_> {
                 moved: pass.moved,
                 inserted: pass.refinement.inserted,
                 jacobian: pass.jacobian(),
+                stopped_at: pass.rewound.map(|rewound| rewound.stopped_at),
+                sheets: pass.rewound.and_then(|rewound| rewound.sheets),
                 volume_change: change.map(|change| change - volume_so_far),
             });
         }
@@ -113,7 +119,7 @@ impl Passes<'_> {
         let strokes = &self.passage.strokes;
         StageSeconds {
             advect: strokes.iter().map(|pass| pass.seconds.advect).sum(),
-            refine: strokes.iter().map(|pass| pass.seconds.refine).sum::<f64>() + self.passage.untangling,
+            refine: strokes.iter().map(|pass| pass.seconds.refine).sum::<f64>() + self.passage.finishing,
             lock: self.lock.map_or(0.0, |lock| lock.seconds),
         }
     }
@@ -123,8 +129,6 @@ impl Passes<'_> {
         let max_triangles = self.context.criteria.map_or(usize::MAX, |criteria| criteria.max_triangles());
         let strokes = self.passage.strokes.iter().enumerate();
         let mut notes: Vec<Note> = strokes.flat_map(|(index, pass)| pass.notes(index, max_triangles)).collect();
-        let crossing = self.lock.map_or(0, |lock| lock.crossing);
-        notes.extend((crossing > 0).then_some(Note::LockCrossings { triangles: crossing }));
         notes.extend(self.facet_note(facet_error));
         notes.extend(self.lock_note());
         notes
@@ -142,7 +146,12 @@ impl Passes<'_> {
             return None;
         }
         let Some(lock) = &self.lock else { return Some(Note::LockNeedsClosed) };
-        let Some(shift) = &lock.shift else { return Some(Note::LockSkipped) };
+        let Some(shift) = &lock.shift else {
+            return Some(match lock.crossing {
+                0 => Note::LockSkipped,
+                triangles => Note::LockCrossings { triangles },
+            });
+        };
         let ratio = shift.max_shift_per_edge;
         (ratio > NOTABLE_LOCK_SHIFT).then_some(Note::LockShift { ratio })
     }
@@ -159,7 +168,9 @@ impl StrokePass {
     /// The notes on the stroke with this index.
     fn notes(&self, stroke: usize, max_triangles: usize) -> impl Iterator<Item = Note> {
         let limit = self.refinement.is_limited.then_some(Note::TriangleLimit { stroke, max_triangles });
-        match self.action {
+        let stopped =
+            self.rewound.map(|rewound| Note::Stopped { stroke, at: rewound.stopped_at, sheets: rewound.sheets });
+        let action_notes = match self.action {
             Action::Flow(step) => {
                 let halved = (step.halvings > 0).then_some(Note::StepHalved { stroke, times: step.halvings });
                 [halved, step.excess().map(|range| Note::Jacobian { stroke, range }), limit]
@@ -169,9 +180,8 @@ impl StrokePass {
                 (!has_touched).then_some(Note::StampMissed { stroke }),
                 is_through.then_some(Note::StampThrough { stroke }),
             ],
-        }
-        .into_iter()
-        .flatten()
+        };
+        action_notes.into_iter().chain([stopped]).flatten()
     }
 }
 

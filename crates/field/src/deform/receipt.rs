@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::Sheets;
 use crate::flow::JacobianRange;
 
 /// Measures of a deformation. Volumes are in cubic model units, and `None` if the mesh is open.
@@ -34,12 +35,19 @@ pub struct Receipt {
     pub facet_error: Option<f64>,
     /// Longest displacement by the lock, model units, or `None` without a lock.
     pub lock_max_shift: Option<f64>,
+    /// Largest ratio of a displacement by the lock to the shortest edge at the vertex, or `None` without
+    /// a lock.
+    pub lock_max_shift_per_edge: Option<f64>,
     /// Longest displacement from rest to the result, model units.
     pub max_displacement: f64,
     /// Vertices, inserted ones included, whose coordinates differ in any bit from rest, before the lock.
     pub moved_vertices: usize,
     /// Vertices that refinement inserted.
     pub inserted_vertices: usize,
+    /// Triangles of the result that cross others although the input triangles that contain them do not.
+    pub new_crossings: usize,
+    /// Pairs of triangles with overlapping boxes that were tested for crossings.
+    pub pairs_tested: u64,
     /// The strokes, in order.
     pub strokes: Vec<StrokeReceipt>,
     /// Wall time of the stages.
@@ -63,6 +71,11 @@ pub struct StrokeReceipt {
     /// Jacobian determinants of the flow map at some of the moved vertices, or `None` if the stroke
     /// moved none or is a stamp.
     pub jacobian: Option<JacobianRange>,
+    /// Fraction of the stroke's time at which it ended, because the surface would have crossed itself;
+    /// `None` if the stroke is complete.
+    pub stopped_at: Option<f64>,
+    /// The closest sheets where the surface would have crossed itself.
+    pub sheets: Option<Sheets>,
     /// Signed change of the volume by this stroke, relative to the volume at rest. `None` if that is
     /// zero or the mesh is open.
     pub volume_change: Option<f64>,
@@ -103,7 +116,16 @@ pub enum Note {
         /// Jacobian determinants.
         range: JacobianRange,
     },
-    /// The lock made triangles cross, even after more refinement.
+    /// A stroke ended early, because the surface would have crossed itself.
+    Stopped {
+        /// Index of the stroke, from 0.
+        stroke: usize,
+        /// Fraction of its time.
+        at: f64,
+        /// The closest sheets there.
+        sheets: Option<Sheets>,
+    },
+    /// The lock was skipped, because it would make triangles cross.
     LockCrossings {
         /// Number of triangles.
         triangles: usize,
@@ -151,8 +173,28 @@ impl fmt::Display for Note {
                      its velocity is discontinuous, or its profile compresses too much"
                 )
             }
+            Self::Stopped { stroke, at, sheets } => {
+                write!(
+                    f,
+                    "stroke {stroke} ended at {:.0} % of its path, before the surface would cross itself",
+                    100.0 * at
+                )?;
+                match sheets {
+                    Some(Sheets { gap, at }) => write!(
+                        f,
+                        ": two sheets are {gap:.1e} apart at ({:.4}, {:.4}, {:.4}); press less deeply, \
+                         or allow more triangles",
+                        at.x, at.y, at.z
+                    ),
+                    None => f.write_str("; press less deeply, or allow more triangles"),
+                }
+            }
             Self::LockCrossings { triangles } => {
-                write!(f, "the lock made {triangles} triangles cross; refine more before locking")
+                write!(
+                    f,
+                    "the lock was skipped, because it would make {triangles} triangles cross; \
+                     refine more or press less deeply"
+                )
             }
             Self::FacetError { fraction } => {
                 write!(f, "the facet error is {:.3} % of the volume; refine more", 100.0 * fraction)

@@ -7,16 +7,14 @@
 mod criteria;
 mod refinement;
 mod resolve;
-mod untangle;
 
 use isochore_mesh::{Cancelled, Monitor};
 use rayon::prelude::*;
 
 pub(crate) use criteria::Criteria;
 pub use criteria::RefineOptions;
-pub(crate) use refinement::Refinement;
+pub(crate) use refinement::{LongestEdge, Refinement};
 pub(crate) use resolve::{resolve_field, split_long_edges};
-pub(crate) use untangle::untangle;
 
 use super::{
     curved_triangle::edge_lengths,
@@ -80,7 +78,7 @@ pub(crate) fn refine(
         refinement.evaluations += estimate.evaluations;
         *facet_error = estimate.volume;
         let chosen = edges_to_split(mesh, criteria, &estimate);
-        if refinement.split(mesh, strokes, chosen, criteria, monitor)?.is_none() {
+        if refinement.split(mesh, strokes, chosen, criteria, LongestEdge::OfImage, monitor)?.is_none() {
             if refinement.is_limited {
                 mesh.put_back(&estimate.changed);
             }
@@ -105,7 +103,8 @@ fn edges_to_split(mesh: &mut Tessellation, criteria: &Criteria, estimate: &Facet
             }
         }
     }
-    for index in triangles_to_split(mesh.gains(), estimate.volume, criteria.volume()) {
+    let allowed = criteria.allowed_facet_error(mesh);
+    for index in triangles_to_split(mesh.gains(), estimate.volume, allowed) {
         let Some(curved) = mesh.curved(index) else { continue };
         let normal = curved.normal();
         let heights = curved.deviations().map(|deviation| deviation.dot(normal).abs());

@@ -15,7 +15,6 @@
 
 mod blocks;
 mod chosen_edges;
-mod crossings;
 mod edge_cycles;
 mod facet_error;
 mod midpoints;
@@ -34,11 +33,12 @@ use edge_cycles::EdgeCycles;
 pub(crate) use facet_error::FacetError;
 use midpoints::{Midpoints, UNFOLLOWED};
 use shape::Shape;
+pub(crate) use split::SplitTriangles;
 
 use super::curved_triangle::edge_lengths;
 use crate::flow::{
     Stroke,
-    advection::{Advected, advect_once, bits},
+    advection::{Advected, advect, advect_once, bits},
 };
 
 /// In `part_of`: the triangle is a whole triangle of the input mesh.
@@ -76,6 +76,8 @@ pub(crate) struct Tessellation {
     frame: VolumeFrame,
     /// Triangles whose images have changed since the last estimate, in any order and with repetitions.
     changed: Vec<u32>,
+    /// Triangles that have changed since the last search for crossings, likewise.
+    unchecked: Vec<u32>,
 }
 
 /// The part of an input triangle that a triangle covers.
@@ -114,6 +116,7 @@ impl Tessellation {
             vertex_bounds: Blocks::NONE,
             frame: VolumeFrame::of(&mesh.positions),
             changed: Vec::new(),
+            unchecked: Vec::new(),
         }
     }
 
@@ -182,7 +185,31 @@ impl Tessellation {
         };
         let changed: Vec<u32> = near.into_par_iter().filter(has_changed).collect();
         self.report_changed(&changed);
+        self.unchecked.extend_from_slice(&changed);
         Ok(AdvectedMesh { evaluations: vertices.evaluations + midpoints.evaluations, moved: vertices.moved.len() })
+    }
+
+    /// Advects all images again, from the base through `strokes`.
+    pub(crate) fn advect_again(&mut self, strokes: &[Stroke], monitor: &dyn Monitor) -> Result<u64, Cancelled> {
+        let mut image = self.base.clone();
+        let mut midpoints = self.midpoints.base.clone();
+        let evaluations = advect(&mut image, strokes, monitor)? + advect(&mut midpoints, strokes, monitor)?;
+        self.image = image;
+        self.midpoints.image = midpoints;
+        self.vertex_bounds.clear();
+        self.midpoints.bounds.clear();
+        let all: Vec<u32> = (0..self.triangles.len() as u32).collect();
+        self.report_changed(&all);
+        self.unchecked.extend_from_slice(&all);
+        Ok(evaluations)
+    }
+
+    /// The triangles that have moved or are new since the last call, in ascending order.
+    pub(crate) fn take_unchecked(&mut self) -> Vec<u32> {
+        let mut unchecked = std::mem::take(&mut self.unchecked);
+        unchecked.par_sort_unstable();
+        unchecked.dedup();
+        unchecked
     }
 
     /// Records that triangles have changed.
@@ -197,6 +224,12 @@ impl Tessellation {
     /// The half-edge that follows in the cycle around its edge.
     pub(crate) fn next_around(&self, half_edge: u32) -> u32 {
         self.edges.next(half_edge)
+    }
+
+    /// The triangles with a vertex for which `is_chosen` is true, in ascending order.
+    pub(crate) fn triangles_with(&self, is_chosen: impl Fn(usize) -> bool + Sync) -> Vec<u32> {
+        let has_chosen = |index: &u32| self.triangles[*index as usize].iter().any(|&vertex| is_chosen(vertex as usize));
+        (0..self.triangles.len() as u32).into_par_iter().filter(has_chosen).collect()
     }
 
     /// Whether a vertex of a triangle has moved from the base.
@@ -226,13 +259,10 @@ impl Tessellation {
         edge_lengths(&self.base_of(triangle)).into_iter().fold(0.0, f64::max)
     }
 
-    /// Sum of the areas of the images of some triangles.
-    pub(crate) fn image_area(&self, triangles: &[u32]) -> f64 {
-        let area = |&triangle: &u32| {
-            let [a, b, c] = self.image_of(triangle as usize);
-            0.5 * (b - a).cross(c - a).length()
-        };
-        triangles.iter().map(area).sum()
+    /// Sum of the areas of some triangles at the given positions of the vertices.
+    pub(crate) fn area_at(&self, positions: &[DVec3], triangles: &[u32]) -> f64 {
+        let corners = |&index: &u32| self.triangles[index as usize].map(|vertex| positions[vertex as usize]);
+        triangles.iter().map(|triangle| area(corners(triangle))).sum()
     }
 
     /// The first and the last vertex of a half-edge.
@@ -265,6 +295,11 @@ fn flags(count: usize, indices: &[u32]) -> Vec<bool> {
     let mut flags = vec![false; count];
     indices.iter().for_each(|&index| flags[index as usize] = true);
     flags
+}
+
+/// Area of a flat triangle.
+fn area([a, b, c]: [DVec3; 3]) -> f64 {
+    0.5 * (b - a).cross(c - a).length()
 }
 
 /// A compensated sum.

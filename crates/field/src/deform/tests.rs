@@ -13,7 +13,7 @@ use crate::{
 
 /// Refined, but not locked.
 const REFINED: DeformOptions = DeformOptions {
-    refine: Some(RefineOptions { volume: 1e-4, deviation: 1e-3, max_edge: None, max_triangles: 2_000_000 }),
+    refine: Some(RefineOptions { volume: Some(1e-4), deviation: 1e-3, max_edge: None, max_triangles: 2_000_000 }),
     lock: false,
 };
 
@@ -69,7 +69,8 @@ fn a_smaller_volume_tolerance_reduces_the_drift() {
     let sphere = primitives::icosphere(1.0, 4);
     let mut last = (f64::INFINITY, 0);
     for volume in [1e-3, 1e-4, 1e-5] {
-        let refine = RefineOptions { volume, deviation: 1.0, max_edge: Some(10.0), ..RefineOptions::default() };
+        let refine =
+            RefineOptions { volume: Some(volume), deviation: 1.0, max_edge: Some(10.0), ..RefineOptions::default() };
         let deformed = run(&sphere, &[press(0.125)], &DeformOptions { refine: Some(refine), lock: false });
         let (drift, triangles) = (volume_change(&deformed).abs(), deformed.mesh.triangles.len());
         // The estimate is asymptotic, and the error of the time step is 1e-5.
@@ -114,12 +115,15 @@ fn refinement_ends_and_leaves_no_slivers() {
 #[test]
 fn refinement_removes_the_crossings_of_a_smooth_stroke() {
     let sphere = primitives::icosphere(1.0, 4);
-    let crossing_area = |options: &DeformOptions| {
-        let mesh = run(&sphere, &[turning_rod(Profile::Quintic, 0.05)], options).mesh;
-        SelfIntersections::of(&mesh, &NoProgress).unwrap().area(&mesh)
+    let stopped_at = |options: &DeformOptions| {
+        let Deformed { mesh, receipt, .. } = run(&sphere, &[turning_rod(Profile::Quintic, 0.05)], options);
+        assert!(SelfIntersections::of(&mesh, &NoProgress).unwrap().is_empty());
+        assert_eq!(receipt.new_crossings, 0);
+        receipt.strokes[0].stopped_at
     };
-    assert!(crossing_area(&BARE) > 0.0);
-    assert_eq!(crossing_area(&REFINED), 0.0);
+    assert_eq!(stopped_at(&REFINED), None);
+    // Without splits, the stroke ends before triangles cross.
+    assert!(stopped_at(&BARE).unwrap() < 1.0);
 }
 
 #[test]

@@ -75,7 +75,7 @@ impl Stamp {
         self.relief
     }
 
-    pub(super) fn truncated(&self, fraction: f64) -> Self {
+    pub(crate) fn truncated(&self, fraction: f64) -> Self {
         Self { path: self.path.truncated(fraction), ..*self }
     }
 }

@@ -56,7 +56,9 @@ impl Integrate {
 
 impl Refine {
     fn validate(&self) -> NumberCheck {
-        positive("volume", self.volume)?;
+        if let Some(volume) = self.volume {
+            positive("volume", volume)?;
+        }
         positive("deviation", self.deviation)?;
         if let Some(length) = self.max_edge {
             positive("max_edge", length)?;

@@ -59,7 +59,7 @@ fn a_jump_of_the_velocity_does_not_halve_the_step() {
 fn refinement_reaches_the_volume_tolerance() {
     let sphere = primitives::icosphere(1.0, 4);
     for volume in [1e-3, 1e-4] {
-        let refine = RefineOptions { volume, ..RefineOptions::default() };
+        let refine = RefineOptions { volume: Some(volume), ..RefineOptions::default() };
         let receipt = run(&sphere, press(0.0625), &DeformOptions { refine: Some(refine), lock: false }).receipt;
         let change = receipt.volume_before_lock.unwrap() / receipt.volume_before.unwrap() - 1.0;
         assert!(change.abs() <= volume, "{volume}: {change:e}");
@@ -74,7 +74,7 @@ fn the_lock_adds_no_crossings() {
     let at = DVec3::new(0.0, 0.6, 0.0);
     let turned = Pose { rotation: rotation_from_vector(DVec3::Y * FRAC_PI_2), translation: at };
     let stroke = Stroke::Move(Move::new(Arc::new(rod), vec![Pose::at(at), turned], 0.05).unwrap());
-    let refine = RefineOptions { volume: 3e-3, deviation: 1e-2, ..RefineOptions::default() };
+    let refine = RefineOptions { volume: Some(3e-3), deviation: 1e-2, ..RefineOptions::default() };
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| run(&sphere, stroke.clone(), &DeformOptions { refine: Some(refine), lock: true }))

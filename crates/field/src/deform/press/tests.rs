@@ -74,7 +74,8 @@ const TOP: f64 = 0.4;
 const FLAT: DeformOptions = DeformOptions { refine: None, lock: false };
 
 fn refined() -> DeformOptions {
-    DeformOptions { refine: Some(RefineOptions::default()), lock: false }
+    let refine = RefineOptions { volume: Some(1e-4), ..RefineOptions::default() };
+    DeformOptions { refine: Some(refine), lock: false }
 }
 
 fn tool(distance: impl Distance + 'static) -> Arc<Tool> {
@@ -364,13 +365,20 @@ fn rejects_a_stamp_whose_volume_cannot_be_raised() {
 }
 
 #[test]
-fn a_stamp_through_a_sheet_is_noted_and_stays_finite() {
+fn a_stamp_through_a_sheet_ends_before_the_sheet_crosses_itself() {
     let sheet = primitives::box_mesh(DVec3::new(1.2, 1.2, 0.05), [40, 40, 2]);
     let keys = vec![Pose::at(DVec3::Z * 0.1), Pose::at(DVec3::Z * -0.2)];
     let stamp = Stroke::Stamp(Stamp::new(tool(Coin), keys, 0.125, Some(0.05)).unwrap());
     match deform(&sheet, &[stamp], &refined(), &NoProgress) {
         Ok(deformed) => {
-            assert_eq!(deformed.receipt.notes, [Note::StampThrough { stroke: 0 }]);
+            // It ends before its two sides cross.
+            let stroke = &deformed.receipt.strokes[0];
+            let stopped_at = stroke.stopped_at.unwrap();
+            assert!(stopped_at > 0.1 && stopped_at < 0.7, "{stopped_at}");
+            assert!(matches!(deformed.receipt.notes[0], Note::Stopped { stroke: 0, .. }));
+            assert_eq!(deformed.receipt.new_crossings, 0);
+            let sheets = stroke.sheets.unwrap();
+            assert!(sheets.gap > 0.0 && sheets.gap < 0.1 && sheets.at.abs().max_element() < 0.6, "{sheets:?}");
             assert!(deformed.mesh.positions.iter().all(|position| position.is_finite()));
             assert!(volume_error(&deformed) <= 1e-14);
         }

@@ -11,13 +11,16 @@ use crate::deform::{curved_triangle::edge_lengths, tessellation::Tessellation};
 /// use isochore_field::RefineOptions;
 ///
 /// let options = RefineOptions { max_edge: Some(0.05), max_triangles: 200_000, ..RefineOptions::default() };
-/// assert_eq!(options.volume, 1e-4);
+/// assert_eq!(options.volume, None);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RefineOptions {
-    /// Largest estimated facet error, as a fraction of the volume of the mesh. Ignored for open meshes.
-    /// A larger value leaves more for the lock to correct; a smaller value splits more triangles.
-    pub volume: f64,
+    /// Largest change of the volume before the lock, as a fraction of the volume of the mesh: by flat
+    /// triangles, which are split, and by the time step, which is halved. Ignored for open meshes. By
+    /// default the facet error is limited by the displacement that the lock would need to correct it:
+    /// a tenth of the allowed deviation, in the mean over the moved surface. A larger value leaves
+    /// more for the lock to correct; a smaller value splits more triangles.
+    pub volume: Option<f64>,
     /// Largest distance from the midpoint of an edge's image to the image of its midpoint, as a fraction
     /// of the longest side of the bounding box of the mesh. A larger value leaves visible facets; a
     /// smaller value splits more triangles.
@@ -30,14 +33,28 @@ pub struct RefineOptions {
 
 impl Default for RefineOptions {
     fn default() -> Self {
-        Self { volume: 1e-4, deviation: 1e-3, max_edge: None, max_triangles: 2_000_000 }
+        Self { volume: None, deviation: 1e-3, max_edge: None, max_triangles: 2_000_000 }
     }
 }
+
+/// The allowed facet error.
+#[derive(Debug, Clone, Copy)]
+enum AllowedFacetError {
+    /// Cubic model units.
+    Volume(f64),
+    /// Mean displacement over the moved surface that corrects it, model units.
+    Shift(f64),
+}
+
+/// Mean displacement by the lock, as a fraction of the allowed deviation, that is small enough by
+/// default. A larger value lets the lock displace visibly; a smaller value splits triangles whose
+/// facets nobody sees.
+const SHIFT: f64 = 0.1;
 
 /// The criteria in model units.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Criteria {
-    volume: f64,
+    facet_error: AllowedFacetError,
     pub(super) deviation: f64,
     pub(super) max_edge: f64,
     /// Edges of at most this length in the base are not split.
@@ -52,19 +69,34 @@ pub(crate) struct Criteria {
 const TORN: f64 = 0.25;
 
 impl Criteria {
-    /// The allowed facet error, cubic model units.
-    pub(crate) fn volume(&self) -> f64 {
-        self.volume
+    /// The allowed facet error of the image, cubic model units.
+    pub(crate) fn allowed_facet_error(&self, mesh: &mut Tessellation) -> f64 {
+        match self.facet_error {
+            AllowedFacetError::Volume(volume) => volume,
+            AllowedFacetError::Shift(shift) => shift * mesh.moved_area(),
+        }
     }
 
-    /// The same criteria with another allowed facet error.
-    pub(crate) fn with_volume(self, volume: f64) -> Self {
-        Self { volume, ..self }
+    /// The allowed change of the volume before the lock, cubic model units, if the caller asked for one.
+    pub(crate) fn asked_volume(&self) -> Option<f64> {
+        match self.facet_error {
+            AllowedFacetError::Volume(volume) if volume.is_finite() => Some(volume),
+            _ => None,
+        }
     }
 
-    /// The same criteria with at most `max_triangles`.
+    /// The same criteria with a fraction of the allowed facet error.
+    pub(crate) fn with_finer_facets(self, fraction: f64) -> Self {
+        let facet_error = match self.facet_error {
+            AllowedFacetError::Volume(volume) => AllowedFacetError::Volume(fraction * volume),
+            AllowedFacetError::Shift(shift) => AllowedFacetError::Shift(fraction * shift),
+        };
+        Self { facet_error, ..self }
+    }
+
+    /// The same criteria with another limit on triangles.
     pub(crate) fn with_max_triangles(self, max_triangles: usize) -> Self {
-        Self { max_triangles: self.max_triangles.min(max_triangles), ..self }
+        Self { max_triangles, ..self }
     }
 
     /// The largest number of triangles.
@@ -78,7 +110,11 @@ impl Criteria {
         let longest_of = |index: usize| edge_lengths(&mesh.image_of(index)).into_iter().fold(0.0, f64::max);
         let longest = || (0..mesh.triangles.len()).into_par_iter().map(longest_of).reduce(|| 0.0, f64::max);
         Self {
-            volume: volume.map_or(f64::INFINITY, |volume| options.volume * volume.abs()),
+            facet_error: match (volume, options.volume) {
+                (None, _) => AllowedFacetError::Volume(f64::INFINITY),
+                (Some(volume), Some(fraction)) => AllowedFacetError::Volume(fraction * volume.abs()),
+                (Some(_), None) => AllowedFacetError::Shift(SHIFT * deviation),
+            },
             deviation,
             shortest: TORN * deviation,
             max_edge: options.max_edge.unwrap_or_else(|| 1.5 * longest()),

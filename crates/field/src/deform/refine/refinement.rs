@@ -6,7 +6,7 @@ use super::criteria::Criteria;
 use crate::{
     deform::{
         curved_triangle::edge_lengths,
-        tessellation::{ChosenEdges, Tessellation},
+        tessellation::{ChosenEdges, SplitTriangles, Tessellation},
     },
     flow::Stroke,
 };
@@ -36,18 +36,19 @@ impl Refinement {
 
     /// Splits the chosen edges and the longest edges of the triangles at them. Returns the new
     /// triangles, or `None` if nothing is chosen or the split would exceed the limit on triangles.
-    pub(super) fn split(
+    pub(crate) fn split(
         &mut self,
         mesh: &mut Tessellation,
         strokes: &[Stroke],
         mut chosen: ChosenEdges,
         criteria: &Criteria,
+        closure: LongestEdge,
         monitor: &dyn Monitor,
-    ) -> Result<Option<Vec<u32>>, Cancelled> {
+    ) -> Result<Option<SplitTriangles>, Cancelled> {
         if chosen.half_edges().is_empty() {
             return Ok(None);
         }
-        add_longest_edges(mesh, &mut chosen);
+        add_longest_edges(mesh, &mut chosen, closure);
         self.evaluations += mesh.advect_followed(strokes, monitor)?;
         self.is_limited = mesh.triangles.len() + chosen.added() > criteria.max_triangles();
         if self.is_limited {
@@ -58,7 +59,15 @@ impl Refinement {
     }
 }
 
-/// Adds the longest edge of the image of each triangle that is split, and propagates to the neighbors.
+/// The surface in which the longest edge of a triangle is looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum LongestEdge {
+    /// The image, and the base for triangles that are slivers there.
+    OfImage,
+    OfBase,
+}
+
+/// Adds the longest edge of each triangle that is split, and propagates to the neighbors.
 ///
 /// Source: M.-C. Rivara, *Algorithms for refining triangular grids suitable for adaptive and
 /// multigrid techniques*, 1984 (longest-edge bisection).
@@ -66,13 +75,13 @@ impl Refinement {
 /// Without this rule a triangle can split its two shorter edges again and again while the longest
 /// just meets the criteria, and become an ever thinner sliver. A stretched image can still make
 /// slivers in the base; those split their longest edge in the base.
-fn add_longest_edges(mesh: &mut Tessellation, chosen: &mut ChosenEdges) {
+fn add_longest_edges(mesh: &mut Tessellation, chosen: &mut ChosenEdges, closure: LongestEdge) {
     let mut index = 0;
     while let Some(&first) = chosen.half_edges().get(index) {
         let mut half_edge = first;
         loop {
             let triangle = half_edge as usize / 3;
-            let lengths = if mesh.is_sliver_in_base(triangle) {
+            let lengths = if closure == LongestEdge::OfBase || mesh.is_sliver_in_base(triangle) {
                 edge_lengths(&mesh.base_of(triangle))
             } else {
                 edge_lengths(&mesh.image_of(triangle))

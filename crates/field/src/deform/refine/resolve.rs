@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::{
     criteria::Criteria,
-    refinement::{MAX_ROUNDS, Refinement},
+    refinement::{LongestEdge, MAX_ROUNDS, Refinement},
 };
 use crate::{
     deform::{
@@ -58,8 +58,8 @@ pub(crate) fn split_long_edges(
         monitor.check("refine", 0.0)?;
         let mut chosen = ChosenEdges::default();
         long_edges(mesh, &triangles).into_iter().for_each(|half_edge| chosen.choose(mesh, half_edge));
-        match refinement.split(mesh, strokes, chosen, criteria, monitor)? {
-            Some(parts) => triangles = parts,
+        match refinement.split(mesh, strokes, chosen, criteria, LongestEdge::OfImage, monitor)? {
+            Some(split) => triangles = split.parts,
             None => break,
         }
     }

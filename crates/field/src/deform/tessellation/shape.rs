@@ -1,19 +1,21 @@
-//! Boxes and volumes of blocks of triangles.
+//! Boxes, volumes and areas of blocks of triangles.
 
 use std::ops::Range;
 
 use isochore_mesh::{Aabb, VolumeFrame};
 
-use super::{Tessellation, blocks::Blocks, midpoints::UNFOLLOWED, sum};
+use super::{Tessellation, area, blocks::Blocks, midpoints::UNFOLLOWED, sum};
 use crate::flow::advection::CHUNK;
 
-/// Bounds and volume of the images of a block of triangles.
+/// Bounds, volume and area of the images of a block of triangles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
     /// Box around the corners and the followed midpoints.
     bounds: Aabb,
     /// Six times the volume between them and the center of the frame.
     six_volumes: f64,
+    /// Area of the triangles that have moved from the base.
+    moved_area: f64,
 }
 
 impl Tessellation {
@@ -37,6 +39,11 @@ impl Tessellation {
         self.frame.volume(six_volumes)
     }
 
+    /// Area of the images of the triangles that have moved from the base.
+    pub(crate) fn moved_area(&mut self) -> f64 {
+        sum(self.update_shapes().map(|shape| shape.moved_area))
+    }
+
     fn update_shapes(&mut self) -> impl Iterator<Item = Shape> {
         let mut shapes = std::mem::replace(&mut self.shapes, Blocks::NONE);
         let compute = |triangles: Range<usize>| {
@@ -46,7 +53,10 @@ impl Tessellation {
             let corners = triangles.clone().flat_map(|index| self.image_of(index));
             Shape {
                 bounds: Aabb::of(corners.chain(midpoints)),
-                six_volumes: sum(triangles.map(|index| self.frame.six_volumes(self.image_of(index)))),
+                six_volumes: sum(triangles.clone().map(|index| self.frame.six_volumes(self.image_of(index)))),
+                moved_area: sum(triangles
+                    .filter(|&index| self.has_moved(index))
+                    .map(|index| area(self.image_of(index)))),
             }
         };
         shapes.fill(self.triangles.len(), compute);

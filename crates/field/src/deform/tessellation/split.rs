@@ -38,10 +38,19 @@ impl TriangleSide for Side {
     }
 }
 
+/// Triangles that a split has made.
+#[derive(Debug)]
+pub(crate) struct SplitTriangles {
+    /// The parts of all split triangles, in ascending order. The first part of each has its index.
+    pub(crate) parts: Vec<u32>,
+    /// The split triangle of each part that was added behind the existing triangles, in their order.
+    pub(crate) sources: Vec<u32>,
+}
+
 impl Tessellation {
     /// Splits the chosen edges and the triangles at them, each into one part more than it has chosen
-    /// edges, so that both sides of an edge agree. Returns the indices of the parts in ascending order.
-    pub(crate) fn split(&mut self, chosen: &ChosenEdges) -> Vec<u32> {
+    /// edges, so that both sides of an edge agree.
+    pub(crate) fn split(&mut self, chosen: &ChosenEdges) -> SplitTriangles {
         let known = self.rest.len() as u32;
         let mut split = Vec::with_capacity(2 * chosen.half_edges().len());
         for &half_edge in chosen.half_edges() {
@@ -58,14 +67,17 @@ impl Tessellation {
         let first_new = self.triangles.len() as u32;
         // One half-edge on each new edge, by the vertices of the edge.
         let mut new_edges = FxHashMap::default();
+        let mut sources = Vec::with_capacity(split.len());
         for &triangle in &split {
             let inserted =
                 self.midpoints_of(triangle as usize).map(|midpoint| Some(known + chosen.index_of(midpoint)?));
             self.split_triangle(triangle, inserted, &mut new_edges);
+            sources.resize(self.triangles.len() - first_new as usize, triangle);
         }
         split.extend(first_new..self.triangles.len() as u32);
         self.report_changed(&split);
-        split
+        self.unchecked.extend_from_slice(&split);
+        SplitTriangles { parts: split, sources }
     }
 
     /// Replaces a triangle by its parts. `inserted` holds the new vertices on the edges 01, 12 and 20.

@@ -71,7 +71,7 @@ fn masking_the_potential_keeps_the_volume_and_masking_the_velocity_does_not() {
 
     let wrong = Stroke::Field(FieldStroke::new(wrong, 0.05).unwrap());
     let right = press.masked(&mask, BOUNDS, 0.05).unwrap();
-    let refine = RefineOptions { volume: 1e-5, ..RefineOptions::default() };
+    let refine = RefineOptions { volume: Some(1e-5), ..RefineOptions::default() };
     let options = DeformOptions { refine: Some(refine), lock: false };
     let [wrong, right] = [wrong, right].map(|stroke| {
         let receipt = deform(&primitives::icosphere(1.0, 4), &[stroke], &options, &NoProgress).unwrap().receipt;
