@@ -3,13 +3,13 @@
 //!
 //! `clay [COUNT] [MESH]…` runs COUNT numbers of each kind of stroke on each mesh, by default one number
 //! on the meshes of the folder `data` and some generated ones. `clay recipe MESH KIND NUMBER` prints
-//! the recipe of a work.
+//! the recipe of a work, and `clay pushes MESH COUNT NUMBER` one with many pushes.
 
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
 use std::{env, error::Error, fs, path::PathBuf, time::Instant};
 
-use isochore_bench::{ClayStroke, TARGET, clay_recipe, print_row};
+use isochore_bench::{ClayStroke, TARGET, clay_recipe, many_pushes, print_row};
 use isochore_mesh::{NoProgress, SelfIntersections, TriMesh, io, primitives};
 use isochore_sculpt::{Measures, Meshes, Recipe, recipe::Format, replay};
 
@@ -22,9 +22,26 @@ fn main() -> Result<(), Box<dyn Error>> {
         print!("{}", clay_recipe(&io::read(mesh)?, kind, number.parse()?));
         return Ok(());
     }
+    if let [command, mesh, count, number] = &arguments[..]
+        && command == "pushes"
+    {
+        print!("{}", many_pushes(&io::read(mesh)?, count.parse()?, number.parse()?));
+        return Ok(());
+    }
     let count = arguments.first().map_or(Ok(1), |count| count.parse::<u64>())?;
     let meshes = if arguments.len() > 1 { files(&arguments[1..])? } else { own_meshes()? };
-    print_row(["mesh", "stroke", "triangles", "after", "crossing", "stopped at", "bare volume", "locked", "below 5°", "s"]);
+    print_row([
+        "mesh",
+        "stroke",
+        "triangles",
+        "after",
+        "crossing",
+        "stopped at",
+        "bare volume",
+        "locked",
+        "below 5°",
+        "s",
+    ]);
     let mut total = Total::default();
     for (name, mesh) in &meshes {
         for kind in ClayStroke::ALL {
@@ -87,9 +104,8 @@ impl Work {
         let after = Measures::of(&deformed.mesh, &NoProgress)?;
         let crossing_before = SelfIntersections::of(mesh, &NoProgress)?.triangles().len();
         let receipt = &deformed.receipt;
-        let relative = |volume: Option<f64>| {
-            volume.zip(receipt.volume_before).map_or(0.0, |(after, before)| after / before - 1.0)
-        };
+        let relative =
+            |volume: Option<f64>| volume.zip(receipt.volume_before).map_or(0.0, |(after, before)| after / before - 1.0);
         let work = Self {
             before: mesh.triangles.len(),
             new_crossings: receipt.new_crossings,

@@ -3,7 +3,11 @@
 //! Each vertex moves along the gradient of the volume, scaled by the displacement of the vertex from
 //! rest. Vertices at rest stay, and vertices of small triangles move least.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use glam::DVec3;
+use isochore_mesh::Aabb;
+use petgraph::unionfind::UnionFind;
 
 use super::balance::{balance, balance_part};
 
@@ -52,6 +56,7 @@ pub(crate) fn lock_with_weights(
 ) -> Option<Lock> {
     let mut directions = directions(rest, image, triangles)?;
     directions.iter_mut().zip(weights).for_each(|(direction, &weight)| *direction *= weight);
+    join_twins(rest, triangles, &mut directions);
     let unlocked = image.to_vec();
     balance(image, &directions, triangles, volume)?;
     Some(Lock::between(&unlocked, image, triangles))
@@ -70,17 +75,56 @@ pub fn lock_part(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], ga
     Some(Lock::between(&unlocked, image, triangles))
 }
 
+/// An edge at rest of at most this fraction of the longest side of the bounds joins twins: vertices that
+/// are one point but for rounding. A larger value keeps fine detail from being locked freely; a smaller
+/// value pulls twins apart.
+const TWIN: f64 = 1e-9;
+
+/// The length of an edge between twins, at most.
+fn twin_length(rest: &[DVec3]) -> f64 {
+    TWIN * Aabb::of(rest.iter().copied()).size().max_element()
+}
+
+/// Gives twins the same direction, the mean of theirs, so that the lock does not pull them apart.
+fn join_twins(rest: &[DVec3], triangles: &[[u32; 3]], directions: &mut [DVec3]) {
+    let longest = twin_length(rest);
+    let mut twins = Vec::new();
+    for [a, b, c] in triangles {
+        for [a, b] in [[*a, *b], [*b, *c], [*c, *a]] {
+            // Each edge inside a surface occurs once in this order.
+            if a < b && rest[a as usize].distance(rest[b as usize]) <= longest {
+                twins.push([a, b]);
+            }
+        }
+    }
+    if twins.is_empty() {
+        return;
+    }
+    let mut groups = UnionFind::<u32>::new(rest.len());
+    twins.iter().for_each(|&[a, b]| _ = groups.union(a, b));
+    let mut members: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for vertex in twins.iter().flatten().copied().collect::<BTreeSet<u32>>() {
+        members.entry(groups.find_mut(vertex)).or_default().push(vertex);
+    }
+    for group in members.values() {
+        let sum: DVec3 = group.iter().map(|&vertex| directions[vertex as usize]).sum();
+        group.iter().for_each(|&vertex| directions[vertex as usize] = sum / group.len() as f64);
+    }
+}
+
 impl Lock {
-    /// The size of the displacement from `unlocked` to `locked` positions.
+    /// The size of the displacement from `unlocked` to `locked` positions. Edges between twins, which
+    /// are moved alike, do not count.
     pub fn between(unlocked: &[DVec3], locked: &[DVec3], triangles: &[[u32; 3]]) -> Self {
         let shift = |vertex: u32| locked[vertex as usize].distance(unlocked[vertex as usize]);
         let max_shift = (0..locked.len() as u32).map(shift).fold(0.0, f64::max);
         let mut max_shift_per_edge: f64 = 0.0;
+        let shortest = twin_length(unlocked);
         for [a, b, c] in triangles {
             for (a, b) in [(*a, *b), (*b, *c), (*c, *a)] {
                 let length = unlocked[a as usize].distance(unlocked[b as usize]);
                 let longest = shift(a).max(shift(b));
-                if longest > 0.0 {
+                if longest > 0.0 && length > shortest {
                     max_shift_per_edge = max_shift_per_edge.max(longest / length);
                 }
             }

@@ -5,8 +5,7 @@ use web_time::Instant;
 
 use super::{
     DeformError, StageSeconds,
-    certificate::{Crossings, HALVINGS, Input, Rewound, Verdict, certify, closest_sheets,
-        crossing_place, rewind},
+    certificate::{Crossings, HALVINGS, Input, Rewound, Verdict, certify, closest_sheets, crossing_place, rewind},
     guard::{StepChoice, WORTHWHILE, choose_step, refine_to_volume},
     press::{Pressed, press},
     refine::{Criteria, Refined, Refinement, estimate_facet_error, refine, resolve_field},

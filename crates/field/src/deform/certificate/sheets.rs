@@ -32,9 +32,8 @@ pub(in crate::deform) fn crossing_place(mesh: &Tessellation, image: &[DVec3], pa
 pub(in crate::deform) fn closest_sheets(mesh: &Tessellation, image: &[DVec3], place: DVec3) -> Option<Sheets> {
     let corners = |index: u32| mesh.triangles[index as usize].map(|vertex| image[vertex as usize]);
     let middle = |[a, b, c]: [DVec3; 3]| (a + b + c) / 3.0;
-    let mut near: Vec<(f64, u32)> = (0..mesh.triangles.len() as u32)
-        .map(|index| (middle(corners(index)).distance_squared(place), index))
-        .collect();
+    let mut near: Vec<(f64, u32)> =
+        (0..mesh.triangles.len() as u32).map(|index| (middle(corners(index)).distance_squared(place), index)).collect();
     let searched = near.len().min(SEARCHED);
     if searched < near.len() {
         near.select_nth_unstable_by(searched, |one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
