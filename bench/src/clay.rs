@@ -28,6 +28,16 @@ pub enum ClayStroke {
 impl ClayStroke {
     /// All kinds.
     pub const ALL: [Self; 4] = [Self::Push, Self::Follow, Self::Twist, Self::Strip];
+
+    /// The kind in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Push => "a ball pushed 2 to 6 radii deep",
+            Self::Follow => "a ball that follows the surface",
+            Self::Twist => "a twist by 20 to 180 degrees",
+            Self::Strip => "a strip along or across",
+        }
+    }
 }
 
 /// A recipe with one random stroke of a kind on `mesh`, with the default options.

@@ -57,7 +57,7 @@ fn custom_field() {
 
 #[test]
 fn build_a_recipe() {
-    let kept = "{\"no_new_self_intersections\": true, \"volume\": true}";
+    let kept = "\"no_new_self_intersections\": true";
     run(
         env!("CARGO_BIN_EXE_build_a_recipe"),
         &["move: ", "twist: ", kept],

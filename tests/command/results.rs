@@ -35,6 +35,7 @@ fn writes_all_requested_outputs() {
             "bounds",
             "self_intersecting_triangles",
             "self_intersecting_area",
+            "angle_below_5_degrees",
         ] {
             assert!(!report[side][key].is_null(), "{side}.{key}");
         }
@@ -45,7 +46,10 @@ fn writes_all_requested_outputs() {
     assert!(number(&report["lock_max_shift"]) > 0.0);
     assert!(number(&report["moved_vertices"]) > 0.0 && number(&report["max_displacement"]) > 0.1);
     assert_eq!(number(&report["inserted_vertices"]), number(&report["after"]["vertices"]) - 642.0);
-    assert_eq!(report["promises"], serde_json::json!({}));
+    assert_eq!(report["promises"], kept_promises());
+    assert_eq!(number(&report["certificate"]["new_crossings"]), 0.0);
+    assert_eq!(number(&report["certificate"]["after_rounding"]), 0.0);
+    assert!(number(&report["certificate"]["pairs_tested"]) > 1000.0);
     assert_eq!(report["strokes"][0]["kind"], "move");
     for key in ["seconds", "evaluations", "moved", "inserted", "volume_change"] {
         assert!(report["strokes"][0][key].is_number(), "{key}");
@@ -294,7 +298,9 @@ fn demo_writes_a_recipe_that_runs_again() {
     let run = folder.run(&["demo"]).expect(0);
     assert!(run.stdout.is_empty() && run.stderr.lines().count() <= 8, "{run:?}");
     let report = folder.json("isochore-demo/report.json");
-    assert_eq!(report["promises"], serde_json::json!({ "volume": true, "no_new_self_intersections": true }));
+    let mut kept = kept_promises();
+    kept["volume"] = true.into();
+    assert_eq!(report["promises"], kept);
     assert!(number(&report["max_displacement"]) > 0.1);
     let before = folder.contents();
     assert!(before.keys().any(|name| name.ends_with(".png")));
@@ -303,4 +309,14 @@ fn demo_writes_a_recipe_that_runs_again() {
     // Only the timings in the report differ.
     after.insert("isochore-demo/report.json".to_owned(), before["isochore-demo/report.json"].clone());
     assert_eq!(after, before);
+}
+
+/// The promises that every recipe makes by default, all kept.
+fn kept_promises() -> Value {
+    serde_json::json!({
+        "no_new_self_intersections": true,
+        "positive_jacobian": true,
+        "lock_within_half_edge": true,
+        "strokes_completed": true,
+    })
 }

@@ -83,9 +83,10 @@ pub struct Deformed {
 /// [`RefineOptions::volume`]. The lock then corrects the remaining change. An open mesh has no
 /// volume to keep.
 ///
-/// No stroke leaves a crossing that the input mesh did not have. Triangles that would cross are split,
-/// and a stroke that still makes the surface cross itself ends early: [`StrokeReceipt::stopped_at`].
-/// Self-intersections of the input mesh remain.
+/// With refinement no stroke leaves a crossing that the input mesh did not have. Triangles that would
+/// cross are split, and a stroke that still makes the surface cross itself ends early:
+/// [`StrokeReceipt::stopped_at`]. Without refinement crossings are counted:
+/// [`Receipt::new_crossings`]. Self-intersections of the input mesh remain.
 ///
 /// The result has the same bits for any number of threads.
 ///

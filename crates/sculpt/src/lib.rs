@@ -72,7 +72,7 @@
 //!
 //! The same recipe and the same meshes give the same bits for any number of threads. Writing and
 //! parsing a recipe returns an equal recipe. Points move exactly as the vertices of a mesh do
-//! before the volume lock.
+//! before the volume lock, unless a stroke on the mesh ends early.
 //!
 //! Not guaranteed: refinement changes triangles, so a replay on a finer mesh has different ones. A
 //! promise is only checked, not enforced, and a flow can bring parts of a surface closer to each

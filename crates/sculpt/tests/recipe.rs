@@ -89,7 +89,10 @@ fn defaults_are_those_that_are_promised() {
     assert!(recipe.refine.enabled && recipe.volume.lock);
     assert_eq!((recipe.refine.volume, recipe.refine.deviation), (None, 1e-3));
     assert_eq!((recipe.refine.max_edge, recipe.refine.max_triangles), (None, 2_000_000));
-    assert_eq!((recipe.promise.volume, recipe.promise.no_new_self_intersections), (None, false));
+    let promise = recipe.promise;
+    assert_eq!(promise.volume, None);
+    assert!(promise.no_new_self_intersections && promise.positive_jacobian);
+    assert!(promise.lock_within_half_edge && promise.strokes_completed);
 }
 
 #[test]

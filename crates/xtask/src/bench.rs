@@ -37,6 +37,12 @@ pub(crate) fn measure_all() -> TaskResult {
         }
         run(Command::new(target().join("release").join(&program)).env("ISOCHORE_BENCH_ROWS", rows))?;
     }
+    let clay = folder.join("clay.md");
+    if clay.exists() {
+        let markers = Markers::new("clay", "cargo xtask bench clay");
+        let text = format!("{}\n{}", fs::read_to_string(clay)?, measured_on(&today)?);
+        markers.write_into(&workspace().join("bench/RESULTS.md"), text.trim_end())?;
+    }
     let rows = rows_of(&folder)?;
     let measured_on = measured_on(&today)?;
     let markers = Markers::new("speed", "cargo xtask bench");
@@ -82,7 +88,7 @@ fn names_in(folder: &Path) -> TaskResult<Vec<String>> {
 /// All rows in a folder, a program after the other.
 fn rows_of(folder: &Path) -> TaskResult<Vec<Value>> {
     let mut rows = Vec::new();
-    for name in names_in(folder)? {
+    for name in names_in(folder)?.into_iter().filter(|name| name != "clay") {
         let lines = fs::read_to_string(folder.join(name).with_extension("jsonl"))?;
         for line in lines.lines() {
             rows.push(serde_json::from_str(line)?);

@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             Stroke::Move(Move { tool: "ball".to_owned(), keys: vec![key([0.0, 0.0, 1.8]), key([0.0, 0.0, 1.1])] }),
             Stroke::Twist(Twist { origin: [0.0; 3], axis: [0.0, 0.0, 1.0], degrees_per_unit: 40.0 }),
         ],
-        promise: Promise { volume: Some(1e-9), no_new_self_intersections: true },
+        promise: Promise { volume: Some(1e-9), ..Promise::default() },
         integrate: Default::default(),
         refine: Default::default(),
         volume: Default::default(),

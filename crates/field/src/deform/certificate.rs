@@ -34,16 +34,18 @@ pub(super) struct Verdict {
 }
 
 /// Searches the triangles that changed since the last call for new crossings, and splits those that
-/// cross. `strokes` lead from the base to the image.
+/// cross. `strokes` lead from the base to the image. Without refinement nothing is searched: the caller
+/// wants the flow of exactly these triangles, and the receipt counts those that cross.
 pub(super) fn certify(
     mesh: &mut Tessellation,
     strokes: &[Stroke],
     context: &Context<'_>,
 ) -> Result<Verdict, Cancelled> {
     let changed = mesh.take_unchecked();
+    let Some(criteria) = context.criteria else { return Ok(Verdict::default()) };
     let crossings = Crossings::of(mesh, &mesh.image, &changed, context)?;
     let mut verdict = Verdict { pairs_tested: crossings.pairs_tested, crossings, ..Verdict::default() };
-    if let Some(criteria) = context.criteria.filter(|_| !verdict.crossings.is_empty()) {
+    if !verdict.crossings.is_empty() {
         untangle(mesh, strokes, criteria, changed.len(), &mut verdict, context)?;
     }
     Ok(verdict)

@@ -312,7 +312,8 @@ fn imprint(
     };
     let (mut pressed, mut crossings) = press_until(surface, 1.0)?;
     let mut rewound = None;
-    if !crossings.is_empty() {
+    // Without refinement the caller wants the flow of exactly these triangles.
+    if !crossings.is_empty() && context.criteria.is_some() {
         let (mut clean, mut crossed) = (0.0, 1.0);
         let mut best = start.clone();
         let mut place = crossing_place(surface, &surface.image, crossings.pairs[0]);
