@@ -7,7 +7,7 @@ use isochore_mesh::{ClosedMesh, NoProgress, SelfIntersections, TriMesh, primitiv
 use isochore_sculpt::{Meshes, Recipe, recipe::Format, replay};
 
 /// Works of each kind on each mesh.
-const COUNT: u64 = 2;
+const COUNT: u64 = 1;
 
 fn meshes() -> [(&'static str, TriMesh); 4] {
     let mut ellipsoid = primitives::icosphere(1.0, 4);
@@ -46,5 +46,5 @@ fn random_strokes_are_certified() {
             }
         }
     }
-    assert!(stopped <= 3, "{stopped} strokes ended early");
+    assert!(stopped <= 2, "{stopped} strokes ended early");
 }

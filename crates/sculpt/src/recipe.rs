@@ -146,7 +146,8 @@ pub struct Refine {
     /// False keeps the triangles unchanged.
     pub enabled: bool,
     /// Largest change of the volume before the lock, as a fraction of the volume. By default
-    /// refinement ends when the lock would move the surface by a tenth of `deviation` on average.
+    /// refinement ends when the lock would move the surface by a tenth of `deviation` on average,
+    /// and the change is below 4e-4.
     #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(skip_serializing_if = "is_default")]
     pub volume: Option<f64>,

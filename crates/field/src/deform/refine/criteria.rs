@@ -17,8 +17,8 @@ use crate::deform::{curved_triangle::edge_lengths, tessellation::Tessellation};
 pub struct RefineOptions {
     /// Largest change of the volume before the lock, as a fraction of the volume of the mesh: by flat
     /// triangles, which are split, and by the time step, which is halved. Ignored for open meshes. By
-    /// default the facet error is limited by the displacement that the lock would need to correct it:
-    /// a tenth of the allowed deviation, in the mean over the moved surface. A larger value leaves
+    /// default the facet error is limited by the displacement that the lock would need to correct it,
+    /// a tenth of the allowed deviation in the mean over the moved surface, and by 4e-4. A larger value leaves
     /// more for the lock to correct; a smaller value splits more triangles.
     pub volume: Option<f64>,
     /// Largest distance from the midpoint of an edge's image to the image of its midpoint, as a fraction
@@ -42,14 +42,20 @@ impl Default for RefineOptions {
 enum AllowedFacetError {
     /// Cubic model units.
     Volume(f64),
-    /// Mean displacement over the moved surface that corrects it, model units.
-    Shift(f64),
+    /// Mean displacement over the moved surface that corrects it, model units, and the limit in cubic
+    /// model units.
+    Shift { shift: f64, limit: f64 },
 }
 
 /// Mean displacement by the lock, as a fraction of the allowed deviation, that is small enough by
 /// default. A larger value lets the lock displace visibly; a smaller value splits triangles whose
 /// facets nobody sees.
 const SHIFT: f64 = 0.1;
+
+/// Facet error, as a fraction of the volume, that is allowed by default even where the lock would correct
+/// it by a small displacement, as on thin plates. A larger value lets the bare volume of thin parts
+/// drift; a smaller value splits triangles whose facets nobody sees.
+const LARGEST: f64 = 4e-4;
 
 /// The criteria in model units.
 #[derive(Debug, Clone, Copy)]
@@ -73,7 +79,7 @@ impl Criteria {
     pub(crate) fn allowed_facet_error(&self, mesh: &mut Tessellation) -> f64 {
         match self.facet_error {
             AllowedFacetError::Volume(volume) => volume,
-            AllowedFacetError::Shift(shift) => shift * mesh.moved_area(),
+            AllowedFacetError::Shift { shift, limit } => limit.min(shift * mesh.moved_area()),
         }
     }
 
@@ -89,7 +95,9 @@ impl Criteria {
     pub(crate) fn with_finer_facets(self, fraction: f64) -> Self {
         let facet_error = match self.facet_error {
             AllowedFacetError::Volume(volume) => AllowedFacetError::Volume(fraction * volume),
-            AllowedFacetError::Shift(shift) => AllowedFacetError::Shift(fraction * shift),
+            AllowedFacetError::Shift { shift, limit } => {
+                AllowedFacetError::Shift { shift: fraction * shift, limit: fraction * limit }
+            }
         };
         Self { facet_error, ..self }
     }
@@ -113,7 +121,9 @@ impl Criteria {
             facet_error: match (volume, options.volume) {
                 (None, _) => AllowedFacetError::Volume(f64::INFINITY),
                 (Some(volume), Some(fraction)) => AllowedFacetError::Volume(fraction * volume.abs()),
-                (Some(_), None) => AllowedFacetError::Shift(SHIFT * deviation),
+                (Some(volume), None) => {
+                    AllowedFacetError::Shift { shift: SHIFT * deviation, limit: LARGEST * volume.abs() }
+                }
             },
             deviation,
             shortest: TORN * deviation,
