@@ -5,6 +5,7 @@ mod certificate;
 mod curved_triangle;
 mod error;
 mod guard;
+mod imprint;
 mod lock;
 mod locking;
 mod passage;

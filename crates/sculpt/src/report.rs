@@ -309,7 +309,7 @@ fn check_promises(
 }
 
 /// New crossings of the written mesh. Those that rounding adds are counted by the triangles that
-/// intersect others, because a file does not tell the parts of the target's triangles.
+/// intersect others, because a file does not store which target triangle contains a triangle.
 fn crossings_after_rounding(
     replay: &Replay,
     written: &TriMesh,
