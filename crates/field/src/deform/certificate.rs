@@ -1,8 +1,8 @@
 //! The certificate: no stroke leaves a crossing that the input mesh did not have.
 //!
 //! A flow map does not make a surface cross itself. New crossings are flat triangles that cut
-//! through a neighboring sheet, so splits remove them ([`untangle`]). If splits do not suffice
-//! within their budget, the stroke ends at its last moment without crossings ([`rewind`]).
+//! through a neighboring sheet, so splits remove them ([`untangle()`]). If splits do not suffice
+//! within their budget, the stroke ends at its last moment without crossings ([`rewind()`]).
 
 mod detect;
 mod input;
