@@ -31,7 +31,8 @@ pub(super) struct LockPreparation {
 }
 
 /// Finds the displacement to `volume`. Vertices around triangles that would cross are held, and the
-/// others move by more.
+/// others move by more. Without refinement none is held, because coarse triangles cross anyway, and
+/// the receipt counts them.
 pub(super) fn prepare_lock(
     mesh: &Tessellation,
     volume: f64,
@@ -48,6 +49,10 @@ pub(super) fn prepare_lock(
         let lock = lock_with_weights(&mesh.rest, &mut image, &mesh.triangles, &weights, volume);
         preparation.crossing = 0;
         let Some(lock) = lock else { break };
+        if context.criteria.is_none() {
+            preparation.locked = Some((image, lock));
+            break;
+        }
         let shifted = mesh.triangles_with(|vertex| image[vertex] != mesh.image[vertex]);
         let mut crossings = Crossings::of(mesh, &image, &shifted, context)?;
         if !crossings.is_empty() {
