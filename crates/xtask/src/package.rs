@@ -35,11 +35,29 @@ pub(crate) fn check_crates() -> TaskResult {
 /// Builds the packages of all registries, each from its own packed files, and checks that they are complete.
 pub(crate) fn check_all() -> TaskResult {
     check_crates()?;
+    forget_packed_sources()?;
     let mut package = cargo(&["package", "--allow-dirty", "--locked", "--quiet"]);
     package.args(LIBRARIES.iter().flat_map(|name| ["--package", name]));
     run(&mut package)?;
     check_python()?;
     check_javascript()
+}
+
+/// Removes the sources of earlier packages from Cargo's cache. They have the same version, so Cargo would
+/// build the packages of today against them.
+fn forget_packed_sources() -> TaskResult {
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
+    let Some(Ok(registries)) = home.map(|home| fs::read_dir(home.join("registry/src"))) else { return Ok(()) };
+    for registry in registries {
+        for package in fs::read_dir(registry?.path())? {
+            let package = package?;
+            if package.file_name().to_string_lossy().starts_with("isochore-") {
+                fs::remove_dir_all(package.path())?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Makes the source distribution for Python and builds the package from it alone.
