@@ -41,6 +41,12 @@ pub trait Distance: Debug + Send + Sync {
     /// Bounding box of the surface, the zero set of the distance.
     fn bounds(&self) -> Aabb;
 
+    /// Box that contains all points whose value is below `distance`, a positive length in model
+    /// units.
+    fn bounds_within(&self, distance: f64) -> Aabb {
+        self.bounds().expanded(distance)
+    }
+
     /// Centroid of the volume inside the surface.
     fn centroid(&self) -> DVec3;
 

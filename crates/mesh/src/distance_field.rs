@@ -5,8 +5,10 @@ mod flat_triangle;
 mod grid;
 mod interpolant;
 mod lanes;
+mod layers;
 mod leaf_block;
 mod lipschitz;
+mod mesh_samples;
 mod oriented_box;
 mod packet;
 mod packet_search;
@@ -16,22 +18,20 @@ mod real;
 mod row_crossings;
 mod sampling;
 mod signs;
+mod smooth_distance;
 mod spline;
 
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
-use crate::bvh::{Clustering, checked_bounds};
-use crate::mesh_distance::{open_edges, surface_centroid};
-use crate::{Aabb, Bvh, BvhError, Cancelled, Distance, DistanceBlock, Monitor, PointBlock, TriMesh};
+use crate::{Aabb, BvhError, Cancelled, Distance, DistanceBlock, Monitor, PointBlock, TriMesh};
 
 pub use grid::Grid;
 use interpolant::Interpolant;
-use packet_search::PacketSearch;
+use mesh_samples::MeshSamples;
+pub use smooth_distance::SmoothDistance;
 
 /// Padding of a distance grid around the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,6 +111,12 @@ pub enum DistanceFieldError {
         /// Longest side of the bounding box, model units.
         extent: f64,
     },
+    /// The support of a tool is not a positive, finite length.
+    #[error("the support must be a positive length, not {length}")]
+    Support {
+        /// The offending value, model units.
+        length: f64,
+    },
     /// The grid would exceed the memory limit.
     #[error(
         "a distance grid of {} × {} × {} samples takes {bytes} bytes to build, more than the limit of {limit}: \
@@ -166,26 +172,14 @@ pub enum DistanceFieldError {
 /// ```
 #[derive(Debug, Clone)]
 pub struct DistanceField {
-    grid: Grid,
-    samples: Vec<f32>,
-    sample_error: f64,
+    sampled: MeshSamples,
     interpolant: Interpolant,
-    surface: Aabb,
-    centroid: DVec3,
     reach: f64,
-    is_closed: bool,
 }
 
 /// Width of the zone at the end of the band in which the field is not trusted, in cells. Larger:
 /// shorter reach. Smaller than 2: the smoothed kink at the end of the band would count as distance.
 const KINK_CELLS: f64 = 2.0;
-
-/// Grid nodes per triangle above which a finer hierarchy pays off. Larger: slower searches of fine
-/// grids. Smaller: longer preparation for coarse grids.
-const NODES_PER_TRIANGLE: usize = 4;
-
-/// Bytes per node during construction: sample, coefficient, and an `f64` copy between the filters.
-const BYTES_PER_NODE: u64 = 4 + 4 + 8;
 
 impl DistanceField {
     /// Samples the distance to `mesh`.
@@ -203,58 +197,34 @@ impl DistanceField {
         options: &DistanceFieldOptions,
         monitor: &dyn Monitor,
     ) -> Result<Self, DistanceFieldError> {
-        monitor.check("hierarchy", 0.0)?;
-        let surface = checked_bounds(&mesh.positions, &mesh.triangles)?;
-        let grid = checked_grid(surface, options)?;
-        let is_fine = grid.len() / NODES_PER_TRIANGLE > mesh.triangles.len();
-        let clustering = if is_fine { Clustering::Fine } else { Clustering::Coarse };
-        let (bvh, (open_edges, volume_and_centroid)) =
-            // The hierarchy is clustered on one thread. The other threads meanwhile find open edges
-            // and volume.
-            Bvh::within(surface, &mesh.positions, &mesh.triangles, clustering, || {
-                let open_edges = open_edges(&mesh.triangles, mesh.positions.len());
-                let volume_and_centroid = open_edges.is_empty().then(|| mesh.volume_and_centroid(surface));
-                (open_edges, volume_and_centroid)
-            });
-        let bvh = Arc::new(bvh);
-        monitor.check("hierarchy", 0.5)?;
-        let search = PacketSearch::new(&bvh, &grid);
-        let is_closed = open_edges.is_empty();
-        if let Some((volume, _)) = volume_and_centroid.filter(|&(volume, _)| volume < 0.0) {
-            return Err(DistanceFieldError::InsideOut { volume });
-        }
-        let centroid = surface_centroid(mesh, surface, volume_and_centroid);
-
-        let (mut samples, sample_error) = sampling::unsigned(&search, &bvh, &grid, options.band, monitor)?;
-        monitor.check("signs", 0.0)?;
-        signs::negate_inside(&mut samples, mesh, &open_edges, &bvh, &grid, monitor)?;
-        let reach = reach(options, grid.cell);
+        let sampled = MeshSamples::new(mesh, options, monitor)?;
+        let reach = reach(options, sampled.grid.cell);
         if matches!(options.padding, Padding::Reach(_)) {
-            check_border(&grid, &samples, reach)?;
+            check_border(&sampled.grid, &sampled.samples, reach)?;
         }
-        let interpolant = Interpolant::new(&grid, &samples, monitor)?;
-        Ok(Self { grid, samples, sample_error, interpolant, surface, centroid, reach, is_closed })
+        let interpolant = Interpolant::new(&sampled.grid, &sampled.samples, monitor)?;
+        Ok(Self { sampled, interpolant, reach })
     }
 
     /// The grid of sample positions.
     pub fn grid(&self) -> &Grid {
-        &self.grid
+        &self.sampled.grid
     }
 
     /// Signed distances at the nodes in [z, y, x] order (x fastest), model units.
     pub fn samples(&self) -> &[f32] {
-        &self.samples
+        &self.sampled.samples
     }
 
     /// Upper bound on the error of a sample against the exact distance, model units.
     pub fn sample_error(&self) -> f64 {
-        self.sample_error
+        self.sampled.sample_error
     }
 
     /// Whether each edge of the mesh is used equally often in both directions. If not, the mesh is
     /// open and its inside is defined by the winding number alone.
     pub fn is_closed(&self) -> bool {
-        self.is_closed
+        self.sampled.is_closed
     }
 }
 
@@ -272,12 +242,12 @@ impl Distance for DistanceField {
     }
 
     fn bounds(&self) -> Aabb {
-        self.surface
+        self.sampled.surface
     }
 
     /// Centroid of the volume. Centroid of the area if the mesh is open or encloses no volume.
     fn centroid(&self) -> DVec3 {
-        self.centroid
+        self.sampled.centroid
     }
 
     fn reach(&self) -> f64 {
@@ -289,21 +259,8 @@ impl Distance for DistanceField {
     }
 
     fn detail(&self) -> f64 {
-        self.grid.cell
+        self.sampled.grid.cell
     }
-}
-
-/// Lays out the grid, and checks the options and the memory that the grid takes.
-fn checked_grid(surface: Aabb, options: &DistanceFieldOptions) -> Result<Grid, DistanceFieldError> {
-    let grid = Grid::around(surface, options.resolution, options.padding)?;
-    if options.band.is_nan() || options.band <= 0.0 {
-        return Err(DistanceFieldError::Band { width: options.band });
-    }
-    let bytes = (grid.len() as u64).saturating_mul(BYTES_PER_NODE);
-    if bytes > options.memory_limit || grid.len() > u32::MAX as usize {
-        return Err(DistanceFieldError::Memory { dims: grid.dims, bytes, limit: options.memory_limit });
-    }
-    Ok(grid)
 }
 
 /// Distance outside the surface up to which the field is reliable: limited by the padding, less the

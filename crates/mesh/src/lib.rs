@@ -187,7 +187,7 @@ pub use check::Check;
 pub use closed_mesh::{ClosedMesh, MeshError};
 pub use compensated_sum::{CompensatedSum, sum_terms};
 pub use distance::Distance;
-pub use distance_field::{DistanceField, DistanceFieldError, DistanceFieldOptions, Grid, Padding};
+pub use distance_field::{DistanceField, DistanceFieldError, DistanceFieldOptions, Grid, Padding, SmoothDistance};
 pub use edit_mesh::{
     Collapsed, EditDelta, EditMesh, EditMeshError, EditTriangle, Fan, NONE, Split, next as next_half_edge,
     previous as previous_half_edge,

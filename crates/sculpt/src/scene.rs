@@ -121,11 +121,12 @@ fn build_strokes(
     }
     let mut tool_builder = ToolBuilder::new(meshes, monitor);
     let mut tools = BTreeMap::new();
-    for name in recipe.used_tools() {
+    for name in recipe.moving_tools() {
         let reach = reach::of_tool(recipe, name, meshes)?;
         tools.insert(name, Arc::new(tool_builder.build(name, &recipe.tools[name], reach)?));
     }
-    let builder = StrokeBuilder { tools: &tools, step: recipe.integrate.step, bounds };
+    let inner_tools = region::inner_tools(recipe, &mut tool_builder)?;
+    let builder = StrokeBuilder { tools: &tools, inner_tools: &inner_tools, step: recipe.integrate.step, bounds };
     let strokes = recipe.strokes.iter().enumerate();
     let strokes = strokes.map(|(index, stroke)| builder.build(index, stroke)).collect::<Result<_, _>>()?;
     Ok((strokes, tool_builder.warnings))

@@ -38,13 +38,13 @@ pub(crate) fn check_all() -> TaskResult {
     forget_packed_sources()?;
     let mut package = cargo(&["package", "--allow-dirty", "--locked", "--quiet"]);
     package.args(LIBRARIES.iter().flat_map(|name| ["--package", name]));
-    run(package.arg("--target-dir").arg(clean_folder("packages")?))?;
+    run(&mut package)?;
     check_python()?;
     check_javascript()
 }
 
 /// Removes the sources of earlier packages from Cargo's cache. They have the same version, so Cargo would
-/// build the packages of today against them. What was compiled from them is left out by an empty target folder.
+/// build the packages of today against them.
 fn forget_packed_sources() -> TaskResult {
     let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
@@ -64,11 +64,7 @@ fn forget_packed_sources() -> TaskResult {
 fn check_python() -> TaskResult {
     let python = interpreter("sdist", &BUILDERS)?;
     let folder = clean_folder("sdist/output")?;
-    // The build backend starts `maturin` by name.
-    let mut folders = vec![python.with_file_name("")];
-    folders.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()));
     let mut sdist = Command::new(&python);
-    sdist.env("PATH", std::env::join_paths(folders)?);
     run(sdist.args(["-m", "build", "--sdist", "--no-isolation", "--outdir"]).arg(&folder).arg(workspace()))?;
     let archive = only_file(&folder)?;
     let listing = Command::new("tar").arg("-tzf").arg(&archive).output()?;

@@ -8,7 +8,7 @@ use std::{error::Error, sync::Arc};
 use glam::DVec3;
 use isochore_examples::{data_mesh, save_mesh, save_picture};
 use isochore_field::{DeformOptions, Move, Pose, Profile, Stroke, Tool, deform};
-use isochore_mesh::{DistanceField, DistanceFieldOptions, NoProgress, Padding};
+use isochore_mesh::{DistanceFieldOptions, NoProgress, SmoothDistance};
 use isochore_picture::{Body, Camera, Options, Panel};
 
 /// Distance from the surface of the pawn over which its field fades out, model units.
@@ -18,10 +18,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let planet = data_mesh("planet")?;
     let pawn = data_mesh("pawn")?;
 
-    // A tool needs the signed distance to its shape, up to its support.
-    let options =
-        DistanceFieldOptions { resolution: 32, padding: Padding::Reach(SUPPORT), ..DistanceFieldOptions::default() };
-    let distance = Arc::new(DistanceField::new(&pawn, &options, &NoProgress)?);
+    // A tool needs the signed distance to its shape, up to its support and without kinks.
+    let options = DistanceFieldOptions { resolution: 64, ..DistanceFieldOptions::default() };
+    let distance = Arc::new(SmoothDistance::new(&pawn, SUPPORT, &options, &NoProgress)?);
     let tool = Arc::new(Tool::new(distance, SUPPORT, Profile::Quintic)?);
 
     // The pawn is upright; its base sinks into the planet from above.

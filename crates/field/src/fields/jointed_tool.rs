@@ -108,9 +108,10 @@ pub struct JointedTool {
     order: Vec<usize>,
     /// Half the shortest extent of each bone.
     radii: Vec<f64>,
-    /// Distance that each bone's support reaches beyond its surface, including the bulges at
-    /// joints.
-    supports: Vec<f64>,
+    /// Box of each bone's support, including the bulges at joints, in tool coordinates.
+    supports: Vec<Aabb>,
+    /// Box of the points that each bone influences, in tool coordinates.
+    influences: Vec<Aabb>,
     profile: Profile,
     /// Width of the smooth minimum of the scaled distances.
     crease: f64,
@@ -157,7 +158,10 @@ impl JointedTool {
         }
         let steepness =
             bones.iter().map(|bone| bone.tool.distance().lipschitz() / bone.tool.support()).fold(0.0, f64::max);
-        Ok(Self { bones, order, radii, supports, profile, crease, widest, influence, steepness })
+        let within = |bone: &Bone, distance: f64| bone.tool.distance().bounds_within(distance);
+        let supports = bones.iter().zip(supports).map(|(bone, support)| within(bone, support)).collect();
+        let influences = bones.iter().map(|bone| within(bone, influence)).collect();
+        Ok(Self { bones, order, radii, supports, influences, profile, crease, widest, influence, steepness })
     }
 
     /// Distance beyond the surface, model units, up to which the distance of every bone must be

@@ -44,11 +44,16 @@ pub struct Tool {
     center: DVec3,
     gauge: Option<Box<Gauge>>,
     reference: Option<Aabb>,
+    support_bounds: Aabb,
 }
 
 impl Tool {
     /// A tool with the signed `distance` of its shape, in tool coordinates. Its field reaches
     /// `support` beyond the surface, model units.
+    ///
+    /// The field is as smooth as the distance. For a mesh, use a
+    /// [`SmoothDistance`](isochore_mesh::SmoothDistance) of the same support: the distance to a
+    /// concave shape has kinks outside, where the field of the tool would jump.
     ///
     /// # Errors
     /// - [`ToolError::Support`] if the support is not a positive length.
@@ -65,7 +70,8 @@ impl Tool {
         if !center.is_finite() {
             return Err(ToolError::Empty);
         }
-        Ok(Self { distance, support, profile, center, gauge: None, reference: None })
+        let support_bounds = distance.bounds_within(support);
+        Ok(Self { distance, support, profile, center, gauge: None, reference: None, support_bounds })
     }
 
     /// Signed distance of the shape, in tool coordinates.
@@ -73,12 +79,9 @@ impl Tool {
         &*self.distance
     }
 
-    /// Signed distance of the shape, for use in another tool.
-    pub fn shared_distance(&self) -> Arc<dyn Distance> {
-        Arc::clone(&self.distance)
-    }
-
-    /// Support R: the distance that the field reaches beyond the surface, model units.
+    /// Support R, model units: the field ends where the distance is R. A
+    /// [`SmoothDistance`](isochore_mesh::SmoothDistance) is smaller than the exact distance over
+    /// grooves of the shape; there the field reaches up to about 1.1 R from the surface.
     pub fn support(&self) -> f64 {
         self.support
     }
@@ -147,9 +150,10 @@ impl Tool {
         self.center += shift;
     }
 
-    /// Box of the support.
-    pub(crate) fn support_bounds(&self) -> Aabb {
-        self.distance.bounds().expanded(self.support)
+    /// Box of the support, the points whose distance is below [`support`](Self::support), in tool
+    /// coordinates. It may be slightly too large.
+    pub fn support_bounds(&self) -> Aabb {
+        self.support_bounds
     }
 }
 

@@ -1,3 +1,4 @@
+mod bounds;
 mod columns;
 mod kernel;
 

@@ -8,6 +8,7 @@
 
 use rayon::prelude::*;
 
+use super::layers::rows_across_layers;
 use super::real::Real;
 use crate::huge_pages::in_huge_pages;
 use crate::{Cancelled, Monitor};
@@ -48,16 +49,17 @@ pub(super) fn coefficients(samples: &[f32], dims: [usize; 3], monitor: &dyn Moni
     // Along z the lines cross all layers. Each task takes those of one row along x, copied out and
     // back.
     let mut coefficients = in_huge_pages(vec![0.0; samples.len()]);
-    let mut rows: Vec<Vec<&mut [f32]>> = (0..ny).map(|_| Vec::with_capacity(nz)).collect();
-    coefficients.chunks_mut(nx).enumerate().for_each(|(row, out)| rows[row % ny].push(out));
-    rows.into_par_iter().enumerate().for_each_init(Vec::new, |lines, (j, rows)| {
-        lines.clear();
-        (0..nz).for_each(|k| lines.extend_from_slice(&work[k * layer + j * nx..][..nx]));
-        filter(lines, nx);
-        for (out, line) in rows.into_iter().zip(lines.chunks(nx)) {
-            out.iter_mut().zip(line).for_each(|(out, &value)| *out = value as f32);
-        }
-    });
+    rows_across_layers(&mut coefficients, dims).into_par_iter().enumerate().for_each_init(
+        Vec::new,
+        |lines, (j, rows)| {
+            lines.clear();
+            (0..nz).for_each(|k| lines.extend_from_slice(&work[k * layer + j * nx..][..nx]));
+            filter(lines, nx);
+            for (out, line) in rows.into_iter().zip(lines.chunks(nx)) {
+                out.iter_mut().zip(line).for_each(|(out, &value)| *out = value as f32);
+            }
+        },
+    );
     Ok(coefficients)
 }
 

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::primitives::{box_mesh, icosphere};
-use crate::{LANES, MeshDistance, NoProgress};
+use crate::{Bvh, LANES, MeshDistance, NoProgress};
 
 fn field(mesh: &TriMesh, resolution: usize, padding: Padding) -> DistanceField {
     let options = DistanceFieldOptions { resolution, padding, ..Default::default() };

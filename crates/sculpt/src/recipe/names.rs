@@ -87,6 +87,11 @@ impl Recipe {
     pub(crate) fn used_tools(&self) -> BTreeSet<&str> {
         self.strokes.iter().flat_map(Stroke::tools).collect()
     }
+
+    /// Tools whose fields strokes use. Inner regions use only the shape of a tool.
+    pub(crate) fn moving_tools(&self) -> BTreeSet<&str> {
+        self.strokes.iter().filter(|stroke| !matches!(stroke, Stroke::Region(_))).flat_map(Stroke::tools).collect()
+    }
 }
 
 impl Stroke {

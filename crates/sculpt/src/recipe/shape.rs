@@ -139,7 +139,7 @@ pub struct MeshTool {
     /// Mesh file, relative to the recipe.
     pub mesh: String,
     /// Cells of the distance grid along the longest side of the mesh, without padding. The grid is
-    /// finer if a cell would be longer than a sixth of the support.
+    /// finer if a cell would be longer than a tenth of the support.
     #[schemars(range(min = 4, max = 1024))]
     pub resolution: u32,
     /// Placement of the mesh in tool coordinates.

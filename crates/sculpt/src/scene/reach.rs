@@ -1,10 +1,10 @@
-//! The distance up to which a tool's shape must be sampled.
+//! The distance up to which the shape of a moving tool must be sampled.
 
 use super::{error::BuildToolError, meshes::Meshes, pose, tool::shape_bounds};
-use crate::recipe::{InnerRegion, Recipe, Stroke, ToolShape};
+use crate::recipe::{Recipe, Stroke, ToolShape};
 
 /// Distance from the shape of the tool `name` up to which the strokes evaluate it, model units: the
-/// support at least, and farther for an inner region or a bone.
+/// support at least, and farther for a bone.
 ///
 /// Closed-form shapes have no limit, so only the support is returned for them.
 pub(super) fn of_tool(recipe: &Recipe, name: &str, meshes: &Meshes) -> Result<f64, BuildToolError> {
@@ -14,11 +14,6 @@ pub(super) fn of_tool(recipe: &Recipe, name: &str, meshes: &Meshes) -> Result<f6
         return Ok(reach);
     }
     for stroke in &recipe.strokes {
-        if let Stroke::Region(region) = stroke
-            && matches!(&region.inner, InnerRegion::Tool(inner) if inner.tool == name)
-        {
-            reach = reach.max(region.outer_distance);
-        }
         if let Stroke::Pose(pose) = stroke
             && pose.bones.iter().any(|bone| bone.tool == name)
         {

@@ -6,12 +6,13 @@ use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::Aabb;
 
-use super::{SceneError, pose, problem::SceneProblem, region, strip};
+use super::{SceneError, pose, problem::SceneProblem, region, region::InnerTools, strip};
 use crate::recipe::{InvalidRecipe, Key, RecipeError, Stroke};
 
 /// Builds the strokes of a valid recipe, in which points replace curve files.
 pub(super) struct StrokeBuilder<'a> {
     pub(super) tools: &'a BTreeMap<&'a str, Arc<field::Tool>>,
+    pub(super) inner_tools: &'a InnerTools<'a>,
     /// Time step, `integrate.step`.
     pub(super) step: f64,
     /// Box around everything that is deformed, model units.
@@ -47,7 +48,7 @@ impl StrokeBuilder<'_> {
             Stroke::Ring(ring) => {
                 strip::ring(ring).map_err(field::StrokeError::from).and_then(|ring| self.field_stroke(ring))
             }
-            Stroke::Region(region) => region::stroke(region, self.tools, self.step, self.bounds)
+            Stroke::Region(region) => region::stroke(region, self.inner_tools, self.step, self.bounds)
                 .map_err(|error| error.inside(&index.to_string()).inside("stroke"))?,
             Stroke::Pose(pose) => pose::stroke(pose, self.tools, self.step)
                 .map_err(|error| RecipeError::<SceneProblem>::new(&format!("stroke.{index}"), error))?,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use isochore_field as field;
 use isochore_mesh::{
-    self as mesh, Aabb, Distance, DistanceField, DistanceFieldError, DistanceFieldOptions, Monitor, Padding,
-    ShapeError, TriMesh,
+    self as mesh, Aabb, Distance, DistanceFieldError, DistanceFieldOptions, Monitor, Padding, ShapeError,
+    SmoothDistance, TriMesh,
 };
 
 use super::{
@@ -17,9 +17,9 @@ use super::{
 };
 use crate::recipe::{MeshTool, RecipeError, Tool, ToolShape};
 
-/// Grid cells across the support, at least. With fewer, the kinks of the interpolant show in the
-/// field.
-const CELLS_PER_SUPPORT: f64 = 6.0;
+/// Grid cells across the support, at least. Larger: more memory and time. Smaller: the smooth
+/// distance has fewer levels, and the kinks of the exact distance show in the field.
+const CELLS_PER_SUPPORT: f64 = 10.0;
 
 /// Builds one tool, outside any recipe, and returns it with warnings about its description.
 ///
@@ -67,43 +67,64 @@ impl<'a> ToolBuilder<'a> {
     /// `reach`: distance from the shape up to which its distance is sampled, at least the support;
     /// model units.
     pub(super) fn build(&mut self, name: &str, tool: &Tool, reach: f64) -> Result<field::Tool, BuildToolError> {
-        let distance: Arc<dyn Distance> = match shape_source(name, tool)? {
-            ShapeSource::Mesh(shape) => Arc::new(self.distance_field(name, shape, tool.support, reach)?),
-            ShapeSource::ClosedForm(distance) => distance,
-        };
+        let distance = self.distance(name, tool, tool.support, reach)?;
         field::Tool::new(distance, tool.support, profile(tool.profile))
             .and_then(|built| built.with_free_form(tool.free_form))
             .map_err(|source| BuildToolError::Tool { name: name.to_owned(), source })
     }
 
-    fn distance_field(
+    /// Signed distance of the shape of `tool`, for a field that ends `support` beyond it. It is
+    /// sampled up to `reach`, at least the support; model units.
+    ///
+    /// This is the only place that decides how the distance to a mesh is sampled and smoothed.
+    pub(super) fn distance(
+        &mut self,
+        name: &str,
+        tool: &Tool,
+        support: f64,
+        reach: f64,
+    ) -> Result<Arc<dyn Distance>, BuildToolError> {
+        Ok(match shape_source(name, tool)? {
+            ShapeSource::Mesh(shape) => Arc::new(self.smooth_distance(name, shape, support, reach)?),
+            ShapeSource::ClosedForm(distance) => distance,
+        })
+    }
+
+    fn smooth_distance(
         &mut self,
         name: &str,
         shape: &MeshTool,
         support: f64,
         reach: f64,
-    ) -> Result<DistanceField, BuildToolError> {
+    ) -> Result<SmoothDistance, BuildToolError> {
         let mesh = tool_mesh(self.meshes, shape)?;
         let least = least_resolution(&mesh, support);
         if f64::from(shape.resolution) < least {
             let resolution = shape.resolution;
-            self.warnings.push(format!(
-                "tools.{name}.shape.resolution: raised from {resolution} to {least}, so that six cells fit into the support"
+            self.warn(format!(
+                "tools.{name}.shape.resolution: raised from {resolution} to {least}, so that ten cells fit into the support"
             ));
         }
         // A cast to an integer saturates; the memory limit of the grid then refuses it.
         let resolution = least.max(shape.resolution.into()) as usize;
         let options = DistanceFieldOptions { resolution, padding: Padding::Reach(reach), ..Default::default() };
-        let field = DistanceField::new(&mesh, &options, self.monitor).map_err(|error| match error {
+        let distance = SmoothDistance::new(&mesh, support, &options, self.monitor).map_err(|error| match error {
             DistanceFieldError::Cancelled(cancelled) => BuildToolError::Cancelled(cancelled),
             source => BuildToolError::DistanceField { name: name.to_owned(), source },
         })?;
-        if !field.is_closed() {
-            self.warnings.push(format!(
+        if !distance.is_closed() {
+            self.warn(format!(
                 "tools.{name}.shape.mesh: the mesh is open; its inside is taken to be where its winding number is above one half"
             ));
         }
-        Ok(field)
+        Ok(distance)
+    }
+
+    /// Adds a warning, once even if a shape is built for several supports.
+    fn warn(&mut self, warning: String) {
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
     }
 }
 

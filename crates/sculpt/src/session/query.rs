@@ -94,7 +94,7 @@ impl Session {
     pub fn vertices_in_reach(&self, tool: &SessionTool, pose: &field::Pose, vertices: &mut Vec<u32>) {
         vertices.clear();
         let tool = tool.tool();
-        let support = tool.distance().bounds().expanded(tool.support());
+        let support = tool.support_bounds();
         let bounds = Aabb::of(support.corners().map(|corner| pose.transform(corner)));
         self.surface.tree.visit_box(bounds, |triangle| {
             let triangle = &self.surface.topology.triangles()[triangle as usize];
@@ -134,7 +134,7 @@ impl Session {
         per_side: usize,
     ) -> Result<Vec<Arrow>, SessionError> {
         let stroke = self.segment(tool, [*from, *to])?.stroke;
-        let support = tool.tool().distance().bounds().expanded(tool.tool().support());
+        let support = tool.tool().support_bounds();
         let per_side = per_side.clamp(2, MOST_ARROWS);
         let spacing = support.size().max_element() / (per_side - 1) as f64;
         let counts = (support.size() / spacing).to_array().map(|count| count as usize + 1);

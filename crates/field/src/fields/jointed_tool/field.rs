@@ -115,15 +115,14 @@ impl JointedField {
     /// beyond its influence is infinite.
     fn distances(&self, points: &PointBlock) -> Vec<DistanceBlock> {
         let influence = self.tool.influence;
-        let bones = self.bones.iter().zip(self.tool.bones());
-        let sample = |(placed, bone): (&PlacedBone, &super::Bone)| {
+        let bones = self.bones.iter().zip(self.tool.bones()).zip(&self.tool.influences);
+        let sample = |((placed, bone), bounds): ((&PlacedBone, &super::Bone), &Aabb)| {
             let mut local = PointBlock::ZERO;
-            let bounds = bone.tool.distance().bounds();
             let mut is_near = false;
             for lane in 0..LANES {
                 let point = placed.placement.to_local(points.get(lane));
                 local.set(lane, point);
-                is_near |= bounds.distance(point) < influence;
+                is_near |= bounds.distance(point) == 0.0;
             }
             let mut distance = DistanceBlock::FAR;
             if is_near {

@@ -86,14 +86,13 @@ impl PostureChange {
         sums.into_iter().map(|(sum, weight)| sum / weight).collect()
     }
 
-    /// Upper bound, over all times, on the speed of the points of each bone's box, expanded by a
-    /// margin.
-    fn top_speed(&self, margin: impl Fn(usize) -> f64) -> f64 {
+    /// Upper bound, over all times, on the speed of the points of a box of each bone, in its tool
+    /// coordinates.
+    fn top_speed(&self, bounds: impl Fn(usize) -> Aabb) -> f64 {
         let bones = self.tool.bones();
         let speed = |index: usize| {
             let bone = &bones[index];
-            let bounds = bone.tool.distance().bounds().expanded(margin(index));
-            let corners = bounds.corners().map(|corner| bone.rest.transform(corner).distance(bone.joint));
+            let corners = bounds(index).corners().map(|corner| bone.rest.transform(corner).distance(bone.joint));
             // Successive joints keep their distance, so the length of the chain bounds the distance
             // from each.
             let mut reach = corners.into_iter().fold(0.0, f64::max);
@@ -138,7 +137,7 @@ impl MovingField for PostureChange {
                 rotation: (rest.rotation * bone.rest.rotation).normalize(),
                 translation: rest.transform(bone.rest.translation),
             };
-            let support = bone.tool.distance().bounds().expanded(self.tool.supports[index]);
+            let support = self.tool.supports[index];
             placed[index] = Some(PlacedBone {
                 placement: Placement::from(&pose),
                 rest,
@@ -157,7 +156,7 @@ impl MovingField for PostureChange {
     }
 
     fn core_speed(&self) -> f64 {
-        self.top_speed(|_| 0.0)
+        self.top_speed(|index| self.tool.bones()[index].tool.distance().bounds())
     }
 
     fn feature_size(&self) -> f64 {

@@ -12,7 +12,7 @@ const RESOLUTION: f64 = 1.0 / 64.0;
 /// Upper bound on the distance from the spine of all points closer to the tool than `threshold`.
 pub(super) fn farthest(tool: &Tool, threshold: f64, spine: &SpineInstant) -> f64 {
     let distance = tool.distance();
-    let whole = distance.bounds().expanded(threshold);
+    let whole = distance.bounds_within(threshold);
     let finest = RESOLUTION * half_diagonal(whole);
     let mut best: f64 = 0.0;
     let mut cells = vec![whole];
@@ -68,7 +68,7 @@ mod tests {
         for threshold in [0.0, 0.25] {
             let exact = 0.13_f64.sqrt() + threshold;
             let bound = farthest(&tool, threshold, &spine);
-            let slack = 2.0 * RESOLUTION * half_diagonal(tool.distance().bounds().expanded(threshold));
+            let slack = 2.0 * RESOLUTION * half_diagonal(tool.distance().bounds_within(threshold));
             assert!(bound >= exact && bound <= exact + slack, "{threshold}: {exact} {bound}");
         }
     }

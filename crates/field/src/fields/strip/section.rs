@@ -1,9 +1,13 @@
 //! The cross-section of a strip: signed distance from a polygon, smoothed by a spline.
 //!
+//! Outside a concave polygon the distance has kinks, at which the field would jump. There the samples
+//! are smoothed like those of a [`SmoothDistance`].
+//!
 //! Source: M. Unser, *Splines: a perfect fit for signal and image processing*, 1999 (the recursive
 //! prefilter).
 
 use glam::DVec2;
+use isochore_mesh::{NoProgress, SmoothDistance};
 
 use super::StripError;
 
@@ -11,6 +15,15 @@ use super::StripError;
 /// smaller. Larger: more memory without benefit. Smaller: the corners of the polygon are visibly
 /// rounded.
 const SAMPLES: f64 = 8.0;
+
+/// The same for a concave polygon. Smaller: the smoothing has fewer levels, and kinks of the distance
+/// show in the field.
+const CONCAVE_SAMPLES: f64 = 16.0;
+
+/// Distance, relative to the product of two sides, by which a corner may be on the wrong side of an
+/// edge of a convex polygon. Larger: shallow notches keep their kinks. Smaller: rounding makes a
+/// convex polygon concave.
+const STRAIGHTNESS: f64 = 1e-12;
 
 /// Largest number of samples: 8 MiB, which fit in cache and are computed quickly.
 const MOST_SAMPLES: usize = 1 << 20;
@@ -51,7 +64,8 @@ impl Section {
         if narrowest <= 0.0 {
             return Err(StripError::SectionEmpty);
         }
-        let cell = support.min(narrowest) / SAMPLES;
+        let is_convex = is_convex(polygon, (high - low).max_element());
+        let cell = support.min(narrowest) / if is_convex { SAMPLES } else { CONCAVE_SAMPLES };
         let margin = support + MARGIN * cell;
         let origin = low - margin;
         let cells = ((high - low + 2.0 * margin) / cell).ceil() + 1.0;
@@ -64,6 +78,9 @@ impl Section {
             (0..counts[0] * counts[1]).map(|index| signed_distance(polygon, node(index))).collect();
         if coefficients.iter().all(|distance| *distance >= 0.0) {
             return Err(StripError::SectionEmpty);
+        }
+        if !is_convex {
+            coefficients = smoothed(&coefficients, counts, cell, support);
         }
         for row in 0..counts[1] {
             prefilter(&mut coefficients, row * counts[0], 1, counts[0]);
@@ -157,6 +174,28 @@ fn prefilter(values: &mut [f64], start: usize, stride: usize, count: usize) {
     }
     for index in 0..count {
         values[at(index)] *= 6.0;
+    }
+}
+
+/// Whether all corners are on one side of each edge.
+fn is_convex(polygon: &[DVec2], size: f64) -> bool {
+    let tolerance = STRAIGHTNESS * size * size;
+    (0..polygon.len()).all(|index| {
+        let (start, edge) = (polygon[index], polygon[(index + 1) % polygon.len()] - polygon[index]);
+        let sides = polygon.iter().map(|&corner| edge.perp_dot(corner - start));
+        let (least, greatest) =
+            sides.fold((0.0, 0.0), |(least, greatest), side| (f64::min(least, side), f64::max(greatest, side)));
+        least >= -tolerance || greatest <= tolerance
+    })
+}
+
+/// The samples of a distance without the kinks outside.
+fn smoothed(samples: &[f64], [nx, ny]: [usize; 2], cell: f64, support: f64) -> Vec<f64> {
+    let single = samples.iter().map(|&sample| sample as f32).collect();
+    match SmoothDistance::smooth_samples(single, [nx, ny, 1], cell, support, &NoProgress) {
+        Ok(smooth) => smooth.into_iter().map(f64::from).collect(),
+        // Not reached: nothing cancels.
+        Err(_) => samples.to_vec(),
     }
 }
 
