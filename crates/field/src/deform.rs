@@ -2,6 +2,7 @@
 
 mod balance;
 mod certificate;
+mod coarsening;
 mod curved_triangle;
 mod error;
 mod guard;
@@ -22,7 +23,7 @@ pub use error::DeformError;
 pub use lock::{Lock, lock_part, lock_volume};
 pub use press::PressError;
 pub use receipt::{Note, Receipt, StageSeconds, StrokeReceipt};
-pub use refine::RefineOptions;
+pub use refine::{Rebase, RefineOptions};
 
 use crate::flow::Stroke;
 use certificate::{Crossings, Input};

@@ -176,7 +176,7 @@ mod fields;
 mod flow;
 
 pub use deform::{
-    DeformError, DeformOptions, Deformed, Lock, Note, PressError, Receipt, RefineOptions, Sheets, StageSeconds,
+    DeformError, DeformOptions, Deformed, Lock, Note, PressError, Rebase, Receipt, RefineOptions, Sheets, StageSeconds,
     StrokeReceipt, deform, lock_part, lock_volume,
 };
 pub use fields::{

@@ -182,7 +182,7 @@ mod winding_number;
 pub use aabb::Aabb;
 pub use assets::{Assets, GltfAssets, Names};
 pub use block::{DistanceBlock, LANES, PointBlock};
-pub use bvh::{Bvh, BvhError, ClosestPoint, Feature};
+pub use bvh::{Bvh, BvhError, ClosestPoint, Feature, nearest_on_triangle};
 pub use check::Check;
 pub use closed_mesh::{ClosedMesh, MeshError};
 pub use compensated_sum::{CompensatedSum, sum_terms};

@@ -9,6 +9,7 @@ mod names;
 pub(crate) mod pose;
 mod problem;
 mod profile;
+mod rebase;
 mod region;
 mod ring;
 pub(crate) mod rotation;
@@ -34,6 +35,7 @@ pub use problem::{
     SkeletonProblem, StructureProblem, SyntaxProblem,
 };
 pub use profile::Profile;
+pub use rebase::{Rebase, RebaseRule};
 pub use region::{
     CapsuleRegion, HalfSpaceRegion, InnerRegion, Region, RegionMotion, RegionTurn, SphereRegion, ToolRegion,
 };
@@ -161,6 +163,9 @@ pub struct Refine {
     pub max_edge: Option<f64>,
     /// Largest number of triangles, at which refinement ends.
     pub max_triangles: usize,
+    /// When the result so far becomes the surface from which the next strokes start: `"never"`,
+    /// `"auto"`, or after a number of strokes. Then triangles that nothing needs any more are merged.
+    pub rebase: Rebase,
 }
 
 /// Properties that the written mesh must have. Promises do not influence the deformation: they are

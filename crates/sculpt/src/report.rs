@@ -38,6 +38,10 @@ pub struct Report {
     pub moved_vertices: usize,
     /// Vertices that refinement inserted.
     pub inserted_vertices: usize,
+    /// How often the result so far became the surface from which the next strokes started.
+    pub rebases: usize,
+    /// Sum over the rebases of the largest distance by which each moved the surface, model units.
+    pub rebase_deviation: f64,
     /// Triangles that cross others although the target's triangles do not.
     pub certificate: Certificate,
     /// Promises of the recipe by name, and whether they hold.
@@ -244,6 +248,8 @@ impl Report {
             max_displacement: receipt.max_displacement,
             moved_vertices: receipt.moved_vertices,
             inserted_vertices: receipt.inserted_vertices,
+            rebases: receipt.rebases,
+            rebase_deviation: receipt.rebase_deviation,
             promises: check_promises(&recipe.promise, volume_change, &certificate, receipt),
             certificate,
             strokes: strokes.collect(),

@@ -6,6 +6,7 @@ use web_time::Instant;
 use super::{
     DeformError, StageSeconds,
     certificate::{Input, Rewound, Verdict, certify, rewind},
+    coarsening::coarsen,
     guard::{StepChoice, WORTHWHILE, choose_step, refine_to_volume},
     imprint::imprint,
     refine::{Criteria, Refined, Refinement, estimate_facet_error, refine, resolve_field},
@@ -37,8 +38,11 @@ pub(super) struct Passage {
     time_error: f64,
     /// Pairs of triangles that the certificates tested.
     pub(super) pairs_tested: u64,
-    /// Wall time of the last refinement for the volume, seconds.
+    /// Wall time of the last refinement for the volume and of rebases, seconds.
     pub(super) finishing: f64,
+    pub(super) rebases: usize,
+    /// Sum over the rebases of the largest distance by which each moved the surface, model units.
+    pub(super) rebase_deviation: f64,
 }
 
 /// Result of one attempt at a stroke.
@@ -94,7 +98,15 @@ impl Passage {
                 [flows @ .., Stroke::Stamp(stamp)] => (flows, Some(&*stamp)),
                 flows => (flows, None),
             };
-            passage.add(flow(surface, flows, context)?);
+            let mut begin = 0;
+            while begin < flows.len() {
+                let part = flow(surface, &mut flows[begin..], context)?;
+                begin += part.strokes.len();
+                passage.add(part);
+                if begin < flows.len() {
+                    passage.rebase(surface, context)?;
+                }
+            }
             if let Some(stamp) = stamp {
                 let index = passage.strokes.len();
                 let (pass, pairs_tested) = imprint(surface, stamp, index, context)?;
@@ -111,16 +123,25 @@ impl Passage {
         self.time_error += other.time_error;
         self.pairs_tested += other.pairs_tested;
         self.finishing += other.finishing;
+        self.rebases += other.rebases;
+        self.rebase_deviation += other.rebase_deviation;
     }
 }
 
-/// Advects the surface through `strokes`, which must not include a stamp.
+/// Advects the surface through the first of `strokes`, until a rebase is due. `strokes` must not include a
+/// stamp.
 fn flow(surface: &mut Tessellation, strokes: &mut [Stroke], context: &Context<'_>) -> Result<Passage, Cancelled> {
     let volume = surface.image_volume();
     let mut passage = Passage { base_volume: volume, ..Passage::default() };
-    for index in 0..strokes.len() {
-        passage.add_stroke(surface, &mut strokes[..=index], context)?;
+    let mut done = 0;
+    while done < strokes.len() {
+        done += 1;
+        passage.add_stroke(surface, &mut strokes[..done], context)?;
+        if context.criteria.is_some_and(|criteria| criteria.rebase().is_due(surface.image.len(), done)) {
+            break;
+        }
     }
+    let strokes = &mut strokes[..done];
     if let Some(criteria) = context.criteria {
         let begin = Instant::now();
         let coarse = surface.clone();
@@ -139,6 +160,20 @@ fn flow(surface: &mut Tessellation, strokes: &mut [Stroke], context: &Context<'_
 }
 
 impl Passage {
+    /// Makes the image the base, and merges triangles that nothing needs any more.
+    fn rebase(&mut self, surface: &mut Tessellation, context: &Context<'_>) -> Result<(), Cancelled> {
+        let Some(criteria) = context.criteria else { return Ok(()) };
+        let begin = Instant::now();
+        let (facet_error, deviation) = (criteria.allowed_facet_error(surface), surface.largest_deviation());
+        surface.freeze();
+        let coarsened = coarsen(surface, criteria, facet_error, context)?;
+        self.rebases += 1;
+        self.rebase_deviation += deviation + coarsened.deviation;
+        self.pairs_tested += coarsened.pairs_tested;
+        self.finishing += begin.elapsed().as_secs_f64();
+        Ok(())
+    }
+
     /// Advects the surface through the last of `strokes`. If new crossings remain, truncates the stroke
     /// to its last moment without them.
     fn add_stroke(

@@ -87,6 +87,8 @@ impl Passes<'_> {
             max_displacement: max_distance(&surface.rest, &surface.image),
             moved_vertices: self.unlocked.moved_vertices,
             inserted_vertices: self.unlocked.inserted_vertices,
+            rebases: self.passage.rebases,
+            rebase_deviation: self.passage.rebase_deviation,
             new_crossings: self.crossings.triangles().len(),
             pairs_tested: self.passage.pairs_tested + self.crossings.pairs_tested,
             strokes: self.stroke_receipts(),

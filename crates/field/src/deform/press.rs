@@ -10,6 +10,7 @@
 
 mod contact;
 mod footprint;
+mod outline;
 mod rim;
 mod step_motion;
 
@@ -23,6 +24,7 @@ use super::{
     tessellation::Tessellation,
 };
 use crate::flow::Stamp;
+pub(crate) use outline::Outline;
 use step_motion::StepMotion;
 
 /// Errors when pressing a [`Stamp`] into a surface.
@@ -92,13 +94,14 @@ const MOST_STRETCH: f64 = 0.125;
 const START_DEPTH: f64 = 0.5;
 
 /// Presses `stamp` into the image. The image is frozen before and after each step. Without `criteria`,
-/// no triangle is split.
+/// no triangle is split. Also returns the outline of the contact.
 pub(crate) fn press(
     mesh: &mut Tessellation,
     stamp: &Stamp,
     criteria: Option<&Criteria>,
     monitor: &dyn Monitor,
-) -> Result<Pressed, PressStop> {
+) -> Result<(Pressed, Outline), PressStop> {
+    let mut outline = Outline::default();
     let volume = signed_volume(&mesh.image, &mesh.triangles);
     let mut pressed = Pressed::default();
     let mut ends = stamp.path().step_ends();
@@ -117,9 +120,14 @@ pub(crate) fn press(
         if time == 0.0 {
             check_start(&motion, &mesh.image)?;
         }
+        let contact = criteria.map(|_| outline::Contact::of(mesh, &motion));
         let step = step(mesh, &motion, volume);
         pressed.add(&step);
+        if let Some(contact) = &contact {
+            pressed.refinement.evaluations += contact.evaluations;
+        }
         if step.is_complete {
+            contact.iter().for_each(|contact| outline.add(contact));
             time = end;
             ends.pop();
         } else {
@@ -131,7 +139,7 @@ pub(crate) fn press(
         }
     }
     mesh.freeze();
-    Ok(pressed)
+    Ok((pressed, outline))
 }
 
 /// Result of one step of a stamp.

@@ -44,6 +44,10 @@ pub struct Receipt {
     pub moved_vertices: usize,
     /// Vertices that refinement inserted.
     pub inserted_vertices: usize,
+    /// How often the result so far became the surface from which the next strokes started.
+    pub rebases: usize,
+    /// Sum over the rebases of the largest distance by which each moved the surface, model units.
+    pub rebase_deviation: f64,
     /// Triangles of the result that cross others although the input triangles that contain them do not.
     pub new_crossings: usize,
     /// Pairs of triangles with overlapping boxes that were tested for crossings.

@@ -12,7 +12,7 @@ use isochore_mesh::{Cancelled, Monitor};
 use rayon::prelude::*;
 
 pub(crate) use criteria::Criteria;
-pub use criteria::RefineOptions;
+pub use criteria::{Rebase, RefineOptions};
 pub(crate) use refinement::{LongestEdge, Refinement};
 pub(crate) use resolve::{resolve_field, split_long_edges};
 

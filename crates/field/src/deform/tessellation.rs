@@ -18,6 +18,7 @@ mod chosen_edges;
 mod edge_cycles;
 mod facet_error;
 mod midpoints;
+mod pieces;
 mod shape;
 mod split;
 
@@ -28,10 +29,11 @@ use isochore_mesh::{
 use rayon::prelude::*;
 
 use blocks::Blocks;
-pub(crate) use chosen_edges::ChosenEdges;
+pub(crate) use chosen_edges::{ChosenEdges, Cut};
 use edge_cycles::EdgeCycles;
 pub(crate) use facet_error::FacetError;
 use midpoints::{Midpoints, UNFOLLOWED};
+pub(crate) use pieces::Piece;
 use shape::Shape;
 pub(crate) use split::SplitTriangles;
 
@@ -59,6 +61,8 @@ pub(crate) struct Tessellation {
     pub(crate) image: Vec<DVec3>,
     /// Vertex indices. The input triangles, or their first parts, come first.
     pub(crate) triangles: Vec<[u32; 3]>,
+    /// The point on an edge at which each inserted vertex was made, in the order of the vertices.
+    pub(crate) origins: Vec<Cut>,
     /// Index into `parts` for each triangle, or [`WHOLE`].
     part_of: Vec<u32>,
     parts: Vec<Part>,
@@ -106,6 +110,7 @@ impl Tessellation {
             base: mesh.positions.clone(),
             image: mesh.positions.clone(),
             triangles: mesh.triangles.clone(),
+            origins: Vec::new(),
             part_of: vec![WHOLE; count],
             parts: Vec::new(),
             edges: EdgeCycles::new(topology),
@@ -133,6 +138,19 @@ impl Tessellation {
         self.shapes.clear();
         self.vertex_bounds.clear();
         self.changed.clear();
+    }
+
+    /// Makes `image`, the positions of the first vertices, the base and the image. All vertices that were
+    /// inserted later lie flat between those.
+    pub(crate) fn restart_from(&mut self, image: &[DVec3]) {
+        let first_inserted = self.rest.len() - self.origins.len();
+        self.image.clear();
+        self.image.extend_from_slice(image);
+        for vertex in image.len()..self.rest.len() {
+            let position = self.origins[vertex - first_inserted].position(&self.image);
+            self.image.push(position);
+        }
+        self.freeze();
     }
 
     /// The deformed mesh, and the same triangles at rest. `mesh` is the input mesh.
@@ -263,6 +281,13 @@ impl Tessellation {
     pub(crate) fn area_at(&self, positions: &[DVec3], triangles: &[u32]) -> f64 {
         let corners = |&index: &u32| self.triangles[index as usize].map(|vertex| positions[vertex as usize]);
         triangles.iter().map(|triangle| area(corners(triangle))).sum()
+    }
+
+    /// The largest deviation of the midpoint of an edge among the triangles whose edges are followed.
+    pub(crate) fn largest_deviation(&self) -> f64 {
+        let of = |index| self.curved(index).map(|curved| curved.deviations().map(DVec3::length));
+        let largest = |index| of(index).into_iter().flatten().fold(0.0, f64::max);
+        (0..self.triangles.len()).into_par_iter().map(largest).reduce(|| 0.0, f64::max)
     }
 
     /// The first and the last vertex of a half-edge.

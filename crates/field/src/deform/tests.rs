@@ -13,7 +13,13 @@ use crate::{
 
 /// Refined, but not locked.
 const REFINED: DeformOptions = DeformOptions {
-    refine: Some(RefineOptions { volume: Some(1e-4), deviation: 1e-3, max_edge: None, max_triangles: 2_000_000 }),
+    refine: Some(RefineOptions {
+        volume: Some(1e-4),
+        deviation: 1e-3,
+        max_edge: None,
+        max_triangles: 2_000_000,
+        rebase: Rebase::Auto,
+    }),
     lock: false,
 };
 

@@ -11,7 +11,7 @@ mod target;
 mod tool;
 
 use super::{
-    Integrate, Output, Recipe, Refine, Stroke,
+    Integrate, Output, Rebase, Recipe, Refine, Stroke,
     error::RecipeError,
     problem::{InvalidRecipe, NumberProblem},
 };
@@ -62,6 +62,9 @@ impl Refine {
         positive("deviation", self.deviation)?;
         if let Some(length) = self.max_edge {
             positive("max_edge", length)?;
+        }
+        if let Rebase::Every(strokes) = self.rebase {
+            at_least("rebase", strokes.into(), 1)?;
         }
         at_least("max_triangles", self.max_triangles as u64, 1)
     }

@@ -18,6 +18,11 @@ impl<'a> Input<'a> {
         Self { mesh, pairs: OnceLock::new() }
     }
 
+    /// Number of vertices.
+    pub(in crate::deform) fn vertices(&self) -> usize {
+        self.mesh.positions.len()
+    }
+
     /// The pairs of input triangles that cross, the smaller index first.
     pub(super) fn pairs(&self, monitor: &dyn Monitor) -> Result<&FxHashSet<[u32; 2]>, Cancelled> {
         if let Some(pairs) = self.pairs.get() {

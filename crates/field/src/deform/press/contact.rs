@@ -91,6 +91,48 @@ pub(super) fn dent(positions: &mut [DVec3], motion: &StepMotion<'_>, cause: Caus
     near
 }
 
+/// An edge that leaves the tool, in tool coordinates.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LeavingEdge {
+    /// Inside the tool.
+    pub(super) from: DVec3,
+    /// Outside the tool.
+    pub(super) to: DVec3,
+    /// Distance at `from`.
+    pub(super) distance: f64,
+}
+
+/// Where an edge passes the tool's surface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Crossing {
+    /// Fraction of the edge from its inner end.
+    pub(super) fraction: f64,
+    /// Gradient of the distance there, in world axes.
+    pub(super) gradient: DVec3,
+    /// Direction in which the tool moves there.
+    pub(super) motion: DVec3,
+}
+
+/// Where each edge reaches the distance `offset` from the tool at the end of a step, and the number of
+/// evaluations of the distance.
+pub(super) fn crossings(motion: &StepMotion<'_>, edges: &[LeavingEdge], offset: f64) -> (Vec<Crossing>, u64) {
+    let along = |edge: &LeavingEdge| Search { offset, ..Search::along(edge.from, edge.distance - offset, edge.to) };
+    let searches: Vec<Search> = edges.iter().map(along).collect();
+    let found: Vec<Search> = searches
+        .par_chunks(LANES)
+        .flat_map_iter(|block| search(motion.tool.distance(), block, motion.rounding))
+        .collect();
+    let crossing = |search: &Search| {
+        let [before, after] = [&motion.start, &motion.end].map(|placement| placement.to_world(search.point()));
+        Crossing {
+            fraction: search.at,
+            gradient: motion.end.turn_to_world(search.gradient),
+            motion: (after - before).normalize_or_zero(),
+        }
+    };
+    (found.iter().map(crossing).collect(), found.iter().map(|search| search.evaluations).sum())
+}
+
 /// A search for the first zero of the distance on a line from inside the tool to outside.
 ///
 /// Positions on the line are fractions of its length.
@@ -107,6 +149,8 @@ struct Search {
     at: f64,
     /// Point to evaluate next once the search has left the line.
     aside: Option<DVec3>,
+    /// Distance that counts as zero.
+    offset: f64,
     value: f64,
     gradient: DVec3,
     evaluations: u64,
@@ -151,6 +195,7 @@ impl Search {
             outside: (1.0, f64::INFINITY),
             at: 1.0,
             aside: None,
+            offset: 0.0,
             value: distance,
             gradient: DVec3::ZERO,
             evaluations: 0,
@@ -173,6 +218,7 @@ impl Search {
         if self.stage == Stage::Done {
             return;
         }
+        let value = value - self.offset;
         (self.value, self.gradient) = (value, gradient);
         self.evaluations += 1;
         match self.stage {

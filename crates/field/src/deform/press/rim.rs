@@ -7,6 +7,7 @@
 
 use glam::DVec3;
 use petgraph::unionfind::UnionFind;
+use rustc_hash::FxHashMap;
 
 use super::{contact::Near, step_motion::StepMotion};
 
@@ -28,6 +29,11 @@ const FACING: f64 = 0.5;
 /// far side when the tool goes through a sheet. A larger value misses sheets of uneven thickness; a
 /// smaller value mistakes rough surfaces for sheets.
 const FAR_SIDE: f64 = 0.1;
+
+/// Vertices that are closer to each other than this, in units of the relief, are raised alike. Their normals
+/// differ as much as those of vertices farther apart, which would fold the triangles between them. A larger
+/// value makes facets; a smaller value takes shorter steps.
+const SHORT: f64 = 0.1;
 
 /// Marks a vertex that is not near the tool.
 const NONE: u32 = u32::MAX;
@@ -79,14 +85,45 @@ impl Rim {
         for index in (0..normals.len()).filter(|&index| is_contact(index)) {
             is_struck[components.find_mut(index as u32) as usize] = true;
         }
-        let mut directions = vec![DVec3::ZERO; positions.len()];
-        for (index, &vertex) in near.vertices.iter().enumerate() {
+        let mut raised = vec![DVec3::ZERO; normals.len()];
+        for (index, raised) in raised.iter_mut().enumerate() {
             if is_eligible[index] && is_struck[components.find_mut(index as u32) as usize] {
                 let weight = bump(near.distances[index] / support) * fade(facing(index) / FACING);
-                directions[vertex as usize] = weight * normals[index];
+                *raised = weight * normals[index];
             }
         }
+        let short = SHORT * motion.relief;
+        let sides = around().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let is_short = |[a, b]: &[u32; 2]| positions[*a as usize].distance(positions[*b as usize]) < short;
+        let short_edges = sides.filter(is_short).map(|edge| edge.map(|vertex| near_index[vertex as usize]));
+        average_over(&mut raised, short_edges.filter(|edge| !edge.contains(&NONE)));
+        let mut directions = vec![DVec3::ZERO; positions.len()];
+        for (&vertex, direction) in near.vertices.iter().zip(raised) {
+            directions[vertex as usize] = direction;
+        }
         Self { directions, is_through }
+    }
+}
+
+/// Gives all vertices that are connected by `edges` the mean of their directions.
+fn average_over(directions: &mut [DVec3], edges: impl Iterator<Item = [u32; 2]>) {
+    let mut clusters = UnionFind::<u32>::new(directions.len());
+    let mut connected = Vec::new();
+    for [a, b] in edges {
+        clusters.union(a, b);
+        connected.extend([a, b]);
+    }
+    connected.sort_unstable();
+    connected.dedup();
+    let mut sums: FxHashMap<u32, (DVec3, f64)> = FxHashMap::default();
+    for &vertex in &connected {
+        let (sum, count) = sums.entry(clusters.find_mut(vertex)).or_default();
+        *sum += directions[vertex as usize];
+        *count += 1.0;
+    }
+    for &vertex in &connected {
+        let (sum, count) = sums[&clusters.find_mut(vertex)];
+        directions[vertex as usize] = sum / count;
     }
 }
 

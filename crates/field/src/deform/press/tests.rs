@@ -174,6 +174,30 @@ fn the_relief_appears_between_vertices() {
 }
 
 #[test]
+fn the_outline_has_no_teeth() {
+    // No triangle reaches from the face of the coin to a vertex beside it: vertices are on the outline.
+    for segments in [20, 33] {
+        let deformed = run(&slab(segments), &[coin(20)], &refined());
+        let distances = distances(&deformed.mesh, &Coin, &coin_keys()[1]);
+        let relief = WAVELENGTH / 8.0;
+        let deep = coin_keys()[1].translation.z + RELIEF + 0.02;
+        let mut on_face = 0;
+        for triangle in &deformed.mesh.triangles {
+            let is_face = |vertex: u32| {
+                let position = deformed.mesh.positions[vertex as usize];
+                position.z > 0.0 && position.z < deep && position.truncate().length() < RADIUS + 0.01
+            };
+            if triangle.iter().any(|&vertex| is_face(vertex)) {
+                on_face += 1;
+                let farthest = triangle.iter().map(|&vertex| distances[vertex as usize]).fold(0.0, f64::max);
+                assert!(farthest <= 0.15 * relief, "{farthest}");
+            }
+        }
+        assert!(on_face > 1000);
+    }
+}
+
+#[test]
 fn points_beyond_the_support_keep_their_bits() {
     let deformed = run(&slab(20), &[coin(20)], &refined());
     let mut far = 0;

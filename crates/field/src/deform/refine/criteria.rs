@@ -29,11 +29,46 @@ pub struct RefineOptions {
     pub max_edge: Option<f64>,
     /// Largest number of triangles. Refinement stops before it exceeds this limit.
     pub max_triangles: usize,
+    /// When the result so far becomes the surface from which the next strokes start.
+    pub rebase: Rebase,
+}
+
+/// When the flat triangles of the result so far become the surface from which the next strokes start.
+///
+/// Without rebases each vertex follows all strokes from the input mesh, which is exact, but every new vertex
+/// costs the time of all strokes so far, and triangles that an earlier stroke needed stay. A rebase merges
+/// those. Each rebase moves the surface by at most 1.25 times the allowed deviation;
+/// [`Receipt::rebase_deviation`](crate::Receipt::rebase_deviation) adds up what was measured.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Rebase {
+    /// Never.
+    Never,
+    /// When the number of vertices, multiplied by the number of strokes since the last rebase, passes a
+    /// million.
+    #[default]
+    Auto,
+    /// After this number of strokes, at least one.
+    Every(usize),
+}
+
+/// Vertices times strokes at which [`Rebase::Auto`] rebases. A larger value keeps the exact map for longer;
+/// a smaller value rebases works of a few strokes.
+const BUDGET: usize = 1_000_000;
+
+impl Rebase {
+    /// Whether a rebase is due.
+    pub(crate) fn is_due(self, vertices: usize, strokes: usize) -> bool {
+        match self {
+            Self::Never => false,
+            Self::Auto => vertices.saturating_mul(strokes) > BUDGET,
+            Self::Every(count) => strokes >= count.max(1),
+        }
+    }
 }
 
 impl Default for RefineOptions {
     fn default() -> Self {
-        Self { volume: None, deviation: 1e-3, max_edge: None, max_triangles: 2_000_000 }
+        Self { volume: None, deviation: 1e-3, max_edge: None, max_triangles: 2_000_000, rebase: Rebase::Auto }
     }
 }
 
@@ -66,6 +101,7 @@ pub(crate) struct Criteria {
     /// Edges of at most this length in the base are not split.
     pub(super) shortest: f64,
     max_triangles: usize,
+    rebase: Rebase,
 }
 
 /// An edge that is shorter than this fraction of the allowed deviation and still deviates crosses a
@@ -107,6 +143,21 @@ impl Criteria {
         Self { max_triangles, ..self }
     }
 
+    /// Largest deviation of the midpoint of an edge, model units.
+    pub(crate) fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
+    /// Longest image of an edge, model units.
+    pub(crate) fn max_edge(&self) -> f64 {
+        self.max_edge
+    }
+
+    /// When the image becomes the base.
+    pub(crate) fn rebase(&self) -> Rebase {
+        self.rebase
+    }
+
     /// The largest number of triangles.
     pub(crate) fn max_triangles(&self) -> usize {
         self.max_triangles
@@ -129,6 +180,7 @@ impl Criteria {
             shortest: TORN * deviation,
             max_edge: options.max_edge.unwrap_or_else(|| 1.5 * longest()),
             max_triangles: options.max_triangles,
+            rebase: options.rebase,
         }
     }
 }

@@ -89,6 +89,14 @@ impl Tessellation {
         Ok(evaluations)
     }
 
+    /// Moves the images of the newly followed midpoints to their bases, as on a frozen mesh.
+    pub(crate) fn move_followed_to_base(&mut self) {
+        for half_edge in std::mem::take(&mut self.midpoints.pending) {
+            let number = self.midpoints.of_half_edge[half_edge as usize] as usize;
+            self.midpoints.image[number] = self.midpoints.base[number];
+        }
+    }
+
     /// The image of a triangle with its midpoints, or `None` unless all are followed.
     pub(crate) fn curved(&self, triangle: usize) -> Option<CurvedTriangle> {
         let midpoints = self.midpoints_of(triangle);

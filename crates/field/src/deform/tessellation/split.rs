@@ -4,7 +4,7 @@ use glam::DVec3;
 use isochore_mesh::{TriangleSide, TriangleSplit};
 use rustc_hash::FxHashMap;
 
-use super::{ChosenEdges, Part, Tessellation, WHOLE, middle, midpoints::UNFOLLOWED};
+use super::{ChosenEdges, Cut, Part, Tessellation, WHOLE, midpoints::UNFOLLOWED};
 
 /// A corner of a triangle that is being split.
 #[derive(Debug, Clone, Copy)]
@@ -13,6 +13,13 @@ struct Corner {
     /// Barycentric coordinates in the input triangle.
     weights: DVec3,
     image: DVec3,
+}
+
+/// A new vertex on a side of a triangle.
+#[derive(Debug, Clone, Copy)]
+struct Inserted {
+    vertex: u32,
+    cut: Cut,
 }
 
 /// A side of a triangle that is being split.
@@ -53,15 +60,16 @@ impl Tessellation {
     pub(crate) fn split(&mut self, chosen: &ChosenEdges) -> SplitTriangles {
         let known = self.rest.len() as u32;
         let mut split = Vec::with_capacity(2 * chosen.half_edges().len());
-        for &half_edge in chosen.half_edges() {
+        for (&half_edge, cut) in chosen.half_edges().iter().zip(chosen.cuts()) {
             let midpoint = self.midpoints.of_half_edge[half_edge as usize];
-            self.rest.push(middle(self.ends(half_edge), &self.rest));
+            self.rest.push(cut.position(&self.rest));
             self.base.push(self.midpoints.base[midpoint as usize]);
             self.image.push(self.midpoints.image[midpoint as usize]);
             self.midpoints.unused.push(midpoint);
             self.vertex_bounds.invalidate(self.rest.len() - 1);
             split.extend(self.edges.around(half_edge).map(|half_edge| half_edge / 3));
         }
+        self.origins.extend_from_slice(chosen.cuts());
         split.sort_unstable();
         split.dedup();
         let first_new = self.triangles.len() as u32;
@@ -69,8 +77,10 @@ impl Tessellation {
         let mut new_edges = FxHashMap::default();
         let mut sources = Vec::with_capacity(split.len());
         for &triangle in &split {
-            let inserted =
-                self.midpoints_of(triangle as usize).map(|midpoint| Some(known + chosen.index_of(midpoint)?));
+            let inserted = self.midpoints_of(triangle as usize).map(|midpoint| {
+                let index = chosen.index_of(midpoint)?;
+                Some(Inserted { vertex: known + index, cut: chosen.cuts()[index as usize] })
+            });
             self.split_triangle(triangle, inserted, &mut new_edges);
             sources.resize(self.triangles.len() - first_new as usize, triangle);
         }
@@ -81,11 +91,20 @@ impl Tessellation {
     }
 
     /// Replaces a triangle by its parts. `inserted` holds the new vertices on the edges 01, 12 and 20.
-    fn split_triangle(&mut self, triangle: u32, inserted: [Option<u32>; 3], new_edges: &mut FxHashMap<[u32; 2], u32>) {
+    fn split_triangle(
+        &mut self,
+        triangle: u32,
+        inserted: [Option<Inserted>; 3],
+        new_edges: &mut FxHashMap<[u32; 2], u32>,
+    ) {
         let Part { parent, corners: weights } = self.part(triangle as usize);
         let vertices = self.triangles[triangle as usize];
         let corner = |vertex: u32, weights| Corner { vertex, weights, image: self.image[vertex as usize] };
-        let middle = |side: usize| Some(corner(inserted[side]?, 0.5 * (weights[side] + weights[(side + 1) % 3])));
+        let middle = |side: usize| {
+            let Inserted { vertex, cut } = inserted[side]?;
+            let fraction = cut.fraction_from(vertices[side]);
+            Some(corner(vertex, (1.0 - fraction) * weights[side] + fraction * weights[(side + 1) % 3]))
+        };
         let whole = [0, 1, 2].map(|side| 3 * triangle + side);
         let split = TriangleSplit {
             corners: [0, 1, 2].map(|index| corner(vertices[index], weights[index])),
@@ -143,7 +162,7 @@ impl Tessellation {
         self.triangles.len() as u32 - 1
     }
 
-    fn set_part(&mut self, triangle: usize, part: Part) {
+    pub(super) fn set_part(&mut self, triangle: usize, part: Part) {
         if self.part_of[triangle] == WHOLE {
             self.part_of[triangle] = self.parts.len() as u32;
             self.parts.push(part);
