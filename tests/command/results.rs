@@ -125,7 +125,7 @@ fn output_does_not_depend_on_the_vector_width() {
 fn warns_about_open_tool_meshes() {
     let open = TETRAHEDRON.replace("f 2 3 4\n", "");
     let folder = Folder::with(&[("press.toml", PRESS), ("open.obj", &open)]);
-    let shape = "tools.ball.shape={ kind = \"mesh\", mesh = \"open.obj\", resolution = 24 }";
+    let shape = "tools.ball.shape={ kind = \"mesh\", mesh = \"open.obj\", resolution = 40 }";
     let run = folder.run(&["run", "press.toml", "--set", shape]).expect(0);
     assert!(run.stderr.contains("warning: tools.ball.shape.mesh: the mesh is open"), "{}", run.stderr);
     assert!(folder.path("out.ply").exists());
@@ -156,8 +156,8 @@ fn warns_when_it_refines_a_coarse_tool_grid() {
     let folder = Folder::with(&[("press.toml", PRESS), ("king.obj", TETRAHEDRON)]);
     let shape = "tools.ball.shape={ kind = \"mesh\", mesh = \"king.obj\", resolution = 8 }";
     let run = folder.run(&["run", "press.toml", "--set", shape]).expect(0);
-    // Six cells across a support of 0.3, for a mesh of side 1.
-    assert!(run.stderr.contains("raised from 8 to 20"), "{}", run.stderr);
+    // Ten cells across a support of 0.3, for a mesh of side 1.
+    assert!(run.stderr.contains("raised from 8 to 34"), "{}", run.stderr);
 }
 
 #[test]

@@ -68,7 +68,8 @@ pub(super) fn prepare_lock(
         }
         preparation.crossing = crossings.triangles().len();
         rings.add(&crossings);
-        rings.reduce(&mut weights, round - 1);
+        // Twice as many rings each round: triangles around a film can be tiny.
+        rings.reduce(&mut weights, (1 << (round - 1)) - 1);
     }
     preparation.seconds = begin.elapsed().as_secs_f64();
     Ok(preparation)

@@ -103,7 +103,8 @@ impl Passage {
                 let part = flow(surface, &mut flows[begin..], context)?;
                 begin += part.strokes.len();
                 passage.add(part);
-                if begin < flows.len() {
+                // After a rebase the map is not exact anyway, so triangles are merged at the end too.
+                if begin < flows.len() || passage.rebases > 0 {
                     passage.rebase(surface, context)?;
                 }
             }

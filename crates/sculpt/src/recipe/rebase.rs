@@ -25,8 +25,8 @@ pub enum Rebase {
 pub enum RebaseRule {
     /// Every vertex follows all strokes from the target.
     Never,
-    /// When the number of vertices, multiplied by the number of strokes since the last rebase, passes a
-    /// million.
+    /// When the number of vertices, multiplied by the number of strokes since the last rebase, passes
+    /// 100,000.
     Auto,
 }
 

@@ -101,7 +101,7 @@ fn rebases_need_fewer_triangles_and_stay_close() {
     let sphere = primitives::icosphere(1.0, 4);
     let strokes = pushes(12);
     let [never, often] = [Rebase::Never, Rebase::Every(2)].map(|rebase| run(&sphere, &strokes, rebase));
-    assert_eq!((never.receipt.rebases, often.receipt.rebases), (0, 5));
+    assert_eq!((never.receipt.rebases, often.receipt.rebases), (0, 6));
     assert!(often.mesh.triangles.len() < never.mesh.triangles.len());
     assert_eq!(often.receipt.new_crossings, 0);
     assert!(SelfIntersections::of(&often.mesh, &NoProgress).unwrap().triangles().is_empty());
@@ -112,7 +112,7 @@ fn rebases_need_fewer_triangles_and_stay_close() {
     let moved = (0..count).map(|vertex| never.mesh.positions[vertex].distance(often.mesh.positions[vertex]));
     let farthest = moved.fold(0.0, f64::max);
     let deviation = often.receipt.rebase_deviation;
-    assert!(deviation > 0.0 && deviation <= 5.0 * 1.25 * 2e-3, "{deviation}");
+    assert!(deviation > 0.0 && deviation <= 6.0 * 1.25 * 2e-3, "{deviation}");
     assert!(farthest <= 2.0 * deviation, "{farthest} {deviation}");
 }
 

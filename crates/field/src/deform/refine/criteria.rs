@@ -43,8 +43,8 @@ pub struct RefineOptions {
 pub enum Rebase {
     /// Never.
     Never,
-    /// When the number of vertices, multiplied by the number of strokes since the last rebase, passes a
-    /// million.
+    /// When the number of vertices, multiplied by the number of strokes since the last rebase, passes
+    /// 100,000.
     #[default]
     Auto,
     /// After this number of strokes, at least one.
@@ -53,7 +53,7 @@ pub enum Rebase {
 
 /// Vertices times strokes at which [`Rebase::Auto`] rebases. A larger value keeps the exact map for longer;
 /// a smaller value rebases works of a few strokes.
-const BUDGET: usize = 1_000_000;
+const BUDGET: usize = 100_000;
 
 impl Rebase {
     /// Whether a rebase is due.

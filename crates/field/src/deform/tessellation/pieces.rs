@@ -51,11 +51,8 @@ impl Tessellation {
         is_used[..kept].fill(true);
         self.triangles.iter().flatten().for_each(|&vertex| is_used[vertex as usize] = true);
         let mut number = vec![0; self.rest.len()];
-        let mut count = 0;
-        for (number, _) in number.iter_mut().zip(&is_used).filter(|(_, is_used)| **is_used) {
-            *number = count;
-            count += 1;
-        }
+        let used = (0..self.rest.len()).filter(|&vertex| is_used[vertex]);
+        (0..).zip(used).for_each(|(new, vertex)| number[vertex] = new);
         for positions in [&mut self.rest, &mut self.base, &mut self.image] {
             let mut flags = is_used.iter();
             positions.retain(|_| flags.next().copied().unwrap_or(true));

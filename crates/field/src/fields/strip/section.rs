@@ -240,8 +240,10 @@ mod tests {
             let (value, gradient) = section.sample(point).unwrap();
             let exact = signed_distance(&polygon, point);
             // At a kink, where the slope changes from −1 to 1, the spline deviates by at most a
-            // third of a cell.
-            assert!((value - exact).abs() < 0.34 * section.cell, "{point}: {value} {exact}");
+            // third of a cell. Outside, the smooth distance is up to a fifth smaller.
+            let rounding = 0.34 * section.cell;
+            let least = if exact > 0.0 { 0.8 * exact } else { exact };
+            assert!((least - rounding..exact + rounding).contains(&value), "{point}: {value} {exact}");
             assert!(gradient.length() < 1.35);
         }
         // Far from kinks, above the sides of the tip, it equals the distance.

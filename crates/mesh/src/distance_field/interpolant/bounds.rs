@@ -104,7 +104,7 @@ mod tests {
             interpolant.sample_single_into(&crate::PointBlock::splat(point), &mut block);
             assert!(block.value[0] >= 0.1 || bounds.distance(point) == 0.0, "{point}");
         }
-        assert_eq!(interpolant.bounds_below(&grid, -0.4), Aabb::EMPTY);
+        assert_eq!(interpolant.bounds_below(&grid, -0.6), Aabb::EMPTY);
     }
 
     #[test]
