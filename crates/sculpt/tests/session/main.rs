@@ -2,6 +2,7 @@
 
 mod attributes;
 mod buffers;
+mod crossings;
 mod keys;
 mod locking;
 mod own_tools;

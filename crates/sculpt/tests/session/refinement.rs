@@ -58,7 +58,8 @@ fn receipts_report_the_change_of_the_volume() {
 fn finer_limits_change_less_volume() {
     let bare = |longest: f64| {
         let mut session = ball();
-        let options = InteractiveRefinement { longest: Some(longest), ..InteractiveRefinement::default() };
+        let options =
+            InteractiveRefinement { longest: Some(longest), deviation: Some(1.0), ..InteractiveRefinement::default() };
         let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(options) }, &press(0.35));
         receipt.volume.unwrap().bare().abs()
     };
@@ -307,9 +308,9 @@ fn stirring_does_not_add_triangles_without_end() {
         let options = InteractiveRefinement { longest: Some(0.06), ..InteractiveRefinement::default() };
         let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(options) }, &poses);
         assert_sound(&session);
-        // About 700 triangles of that size are in reach, a cap of radius 0.6. Each of the four
-        // halvings makes four triangles of one. Without the bound, each move would double them.
+        // About 700 triangles of that size are in reach, a cap of radius 0.6. Without bounds, each move
+        // would double them.
         assert!(session.triangle_count() < 256 * 700, "{}", session.triangle_count());
-        assert!(!receipt.is_limited && receipt.refused_splits > 0, "{receipt:?}");
+        assert!(!receipt.is_limited && (receipt.refused_splits > 0 || receipt.stopped_at.is_some()), "{receipt:?}");
     }
 }

@@ -8,7 +8,12 @@ fn refining() -> StrokeOptions {
 
 /// Only collapses, all edges that the stroke squeezes to half.
 fn coarsening() -> StrokeOptions {
-    let refine = InteractiveRefinement { longest: Some(1.0), collapse: 0.3, ..InteractiveRefinement::default() };
+    let refine = InteractiveRefinement {
+        longest: Some(1.0),
+        deviation: Some(1.0),
+        collapse: 0.3,
+        ..InteractiveRefinement::default()
+    };
     StrokeOptions { refine: Some(refine) }
 }
 

@@ -9,8 +9,12 @@ fn undo_and_redo_of_a_hundred_strokes_restore_the_bits() {
     for index in 0..100 {
         let tool = if index % 3 == 0 { rod() } else { brush() };
         make(&mut session, &tool, &refined(0.12), &arc(0.7 * f64::from(index), 6));
-        states.push(snapshot(&session));
+        // A stroke that was ended at its beginning leaves no trace.
+        if session.history().undoable == states.len() {
+            states.push(snapshot(&session));
+        }
     }
+    assert!(states.len() > 80, "{}", states.len());
     assert_sound(&session);
     assert!(session.vertex_count() > session.opened().positions.len() + 500);
     for state in states.iter().rev().skip(1) {
