@@ -14,6 +14,8 @@ mod help;
 mod interruption;
 #[path = "command/missing_files.rs"]
 mod missing_files;
+#[path = "command/remesh.rs"]
+mod remesh;
 #[path = "command/results.rs"]
 mod results;
 #[path = "command/stream.rs"]

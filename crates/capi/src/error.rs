@@ -170,6 +170,7 @@ impl From<SessionError> for Failure {
     fn from(error: SessionError) -> Self {
         let status = match error {
             SessionError::StrokeUnderWay | SessionError::NoStroke => Status::State,
+            SessionError::Cancelled(_) => Status::Cancelled,
             _ => Status::Argument,
         };
         Self::new(status, error)

@@ -14,6 +14,7 @@ mod error;
 mod memory;
 mod mesh;
 mod monitor;
+mod remesh;
 mod replay;
 mod session;
 mod tool;
@@ -29,6 +30,7 @@ pub use mesh::{
     isochore_mesh_vertex_count, isochore_mesh_volume, isochore_mesh_write,
 };
 pub use monitor::Progress;
+pub use remesh::{RemeshOptions, RemeshReceipt, isochore_remesh};
 pub use replay::{NamedMesh, isochore_run, isochore_run_file, isochore_run_points};
 pub use session::{
     Arrow, Buffer, Buffers, History, Hit, LockSkipped, MoveReceipt, Origin, Range, Session, SessionOptions,
@@ -37,7 +39,7 @@ pub use session::{
     isochore_session_end_stroke, isochore_session_export, isochore_session_free, isochore_session_freeze_edges,
     isochore_session_history, isochore_session_log, isochore_session_move_to, isochore_session_moved_volume,
     isochore_session_new, isochore_session_origin, isochore_session_pick, isochore_session_preview,
-    isochore_session_redo, isochore_session_take_changes, isochore_session_undo, isochore_session_uvs,
+    isochore_session_redo, isochore_session_remesh, isochore_session_take_changes, isochore_session_undo, isochore_session_uvs,
     isochore_session_vertex_map, isochore_session_vertices, isochore_session_vertices_in_reach,
     isochore_session_volume,
 };

@@ -4,6 +4,7 @@ mod buffers;
 mod options;
 mod query;
 mod receipt;
+mod remesh;
 
 use std::{ffi::c_char, sync::Arc};
 
@@ -27,6 +28,7 @@ pub use query::{
     isochore_session_volume,
 };
 pub use receipt::{LockSkipped, MoveReceipt, StrokeReceipt};
+pub use remesh::isochore_session_remesh;
 
 use crate::{
     error::{Failure, Status, guarded},

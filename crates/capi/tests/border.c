@@ -521,6 +521,38 @@ static void attributes(const char *path) {
     isochore_mesh_free(mesh);
 }
 
+static void remeshes(void) {
+    IsochoreMesh *mesh = tetrahedron(), *finer = NULL, *coarser = NULL;
+    IsochoreSession *session = NULL;
+    IsochoreRemeshOptions options = {0.1, 0, 0};
+    IsochoreRemeshReceipt receipt;
+    double volume = 0;
+    CHECK(isochore_remesh(mesh, &options, NULL, NULL, &finer, &receipt) == ISOCHORE_STATUS_OK);
+    CHECK(receipt.triangles_before == 4 && receipt.triangles_after == isochore_mesh_triangle_count(finer));
+    CHECK(receipt.triangles_after > 100 && receipt.splits > 50 && receipt.has_volume);
+    CHECK(isochore_mesh_volume(finer, &volume) == ISOCHORE_STATUS_OK && fabs(volume - 1.0 / 6) < 1e-13);
+    CHECK(isochore_remesh(finer, NULL, NULL, NULL, &coarser, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_mesh_triangle_count(coarser) < 50);
+
+    int calls = 0;
+    CHECK(isochore_remesh(finer, NULL, stop, &calls, &coarser, NULL) == ISOCHORE_STATUS_CANCELLED && calls > 0);
+    CHECK(isochore_remesh(finer, NULL, NULL, NULL, NULL, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    options.edge_length = -1;
+    CHECK(isochore_remesh(finer, &options, NULL, NULL, &coarser, NULL) == ISOCHORE_STATUS_ARGUMENT);
+    CHECK(strstr(isochore_last_error(), "edge length"));
+
+    CHECK(isochore_session_new(finer, NULL, &session) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_remesh(session, NULL, stop, &calls, NULL) == ISOCHORE_STATUS_CANCELLED);
+    CHECK(isochore_session_remesh(session, NULL, NULL, NULL, &receipt) == ISOCHORE_STATUS_OK);
+    CHECK(receipt.triangles_after < receipt.triangles_before && receipt.undo_bytes > 0);
+    bool is_done = false;
+    CHECK(isochore_session_undo(session, &is_done) == ISOCHORE_STATUS_OK && is_done);
+    isochore_session_free(session);
+    isochore_mesh_free(coarser);
+    isochore_mesh_free(finer);
+    isochore_mesh_free(mesh);
+}
+
 int main(int count, char **arguments) {
     CHECK(count == 2);
     meshes(arguments[1]);
@@ -529,6 +561,7 @@ int main(int count, char **arguments) {
     recipe_files();
     points();
     sessions();
+    remeshes();
     queries();
     masks();
     skins();

@@ -60,6 +60,8 @@ pub enum Command {
     Frames(FramesArguments),
     /// Sweep a cross-section along a curve
     Sweep(SweepArguments),
+    /// Replace the triangles of a mesh by even ones on the same surface
+    Remesh(RemeshArguments),
     /// Press one mesh into another as a first example
     Demo(DemoArguments),
     /// Print the JSON schema of recipes or reports
@@ -127,6 +129,32 @@ pub struct DistanceArguments {
     /// cell, dims and error_bound
     #[arg(long, short, value_name = "GRID.npy", value_hint = ValueHint::FilePath)]
     pub output: PathBuf,
+}
+
+/// Arguments of `isochore remesh`.
+#[derive(Debug, Clone, PartialEq, Args)]
+pub struct RemeshArguments {
+    /// Mesh file (.obj .gltf .glb .ply .stl .off); an oriented manifold surface, closed or open
+    #[arg(value_name = "MESH", value_hint = ValueHint::FilePath)]
+    pub mesh: PathBuf,
+
+    /// Remeshed surface (.obj .gltf .glb .ply .stl .off), with all attributes that the format can
+    /// store [default: MESH with -remeshed before the extension]
+    #[arg(value_name = "OUTPUT", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+
+    /// Length of the edges, in model units [default: as long as the deviation allows]
+    #[arg(long, value_name = "LENGTH", value_parser = numbers::positive, allow_negative_numbers = true)]
+    pub edge_length: Option<f64>,
+
+    /// Largest distance between the two surfaces, as a fraction of the longest side of MESH
+    /// [default: 0.001; with --edge-length a tenth of that length]
+    #[arg(long, value_name = "FRACTION", value_parser = numbers::positive, allow_negative_numbers = true)]
+    pub deviation: Option<f64>,
+
+    /// Report in JSON: triangles, angles, volume and self-intersections before and after
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub report: Option<PathBuf>,
 }
 
 /// Arguments of `isochore demo`.

@@ -1,5 +1,5 @@
 //! The command `isochore`: deforms meshes by recipes, prints mesh statistics, samples signed
-//! distances, and computes frames and swept surfaces along curves.
+//! distances, computes frames and swept surfaces along curves, and remeshes.
 //!
 //! The computations are in the libraries. This crate handles arguments, files, messages and exit
 //! codes. It parses a command line in two stages: [`arguments`] holds it as plain data, and the
@@ -28,6 +28,7 @@ mod man;
 mod outcome;
 mod outputs;
 mod preview;
+mod remesh;
 mod run;
 mod schema;
 mod spine_file;
@@ -90,6 +91,7 @@ fn execute(arguments: &Arguments) -> Result<Outcome, CommandError> {
         Command::Distance(arguments) => distance::distance(arguments, &console),
         Command::Frames(arguments) => frames::frames(arguments, &console),
         Command::Sweep(arguments) => sweep::sweep(arguments, &console),
+        Command::Remesh(arguments) => remesh::remesh(arguments, &console),
         Command::Demo(arguments) => demo::demo(arguments, &console),
         Command::Schema(arguments) => schema::schema(arguments, &console),
         Command::Completions(arguments) => completions::completions(arguments, &console),

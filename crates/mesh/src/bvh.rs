@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::Aabb;
 use build::Groups;
-pub use closest_point::{ClosestPoint, Feature};
+pub use closest_point::{ClosestPoint, Feature, nearest_on_triangle};
 pub(crate) use closest_point::{OnTriangle, SquaredDistance, closest_on_triangle};
 pub(crate) use unit_frame::UnitFrame;
 

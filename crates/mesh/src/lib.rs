@@ -175,6 +175,7 @@ mod pseudo_normals;
 mod self_intersection;
 mod shapes;
 mod surface_tree;
+mod surface_walk;
 mod topology;
 mod tri_mesh;
 mod winding_number;
@@ -182,7 +183,7 @@ mod winding_number;
 pub use aabb::Aabb;
 pub use assets::{Assets, GltfAssets, Names};
 pub use block::{DistanceBlock, LANES, PointBlock};
-pub use bvh::{Bvh, BvhError, ClosestPoint, Feature};
+pub use bvh::{Bvh, BvhError, ClosestPoint, Feature, nearest_on_triangle};
 pub use check::Check;
 pub use closed_mesh::{ClosedMesh, MeshError};
 pub use compensated_sum::{CompensatedSum, sum_terms};
@@ -197,9 +198,10 @@ pub use journaled::{Delta, FreeSlots, Journaled};
 pub use measure::{Components, EdgeLengths, VolumeFrame, signed_volume};
 pub use mesh_distance::MeshDistance;
 pub use monitor::{Cancelled, Monitor, NoProgress};
-pub use self_intersection::{SelfIntersectionError, SelfIntersections, triangles_intersect};
+pub use self_intersection::{SelfIntersectionError, SelfIntersections, patch_intersects, triangles_intersect};
 pub use shapes::{Capsule, Ellipsoid, HalfSpace, RoundedBox, ShapeError, Sphere, Torus};
 pub use surface_tree::{SurfaceHit, SurfaceTree};
+pub use surface_walk::{Foot, SurfaceWalk};
 pub use topology::Topology;
 pub use tri_mesh::{
     AttributeError, CornerAttributes, Origin, Resampling, SkinError, SkinTable, SplitError, SubTriangle, Subdivision,

@@ -8,6 +8,7 @@ mod box_tree;
 mod common_corners;
 mod exact_triangle;
 mod pair;
+mod patch;
 mod separation;
 #[cfg(test)]
 mod tests;
@@ -24,6 +25,7 @@ use box_tree::{BoxTree, NodePair};
 use common_corners::CommonCorners;
 use exact_triangle::{ExactTriangle, scaled};
 pub use pair::triangles_intersect;
+pub use patch::patch_intersects;
 use separation::{LANES, PairBlock};
 
 /// Target number of node pairs into which the work is divided. More: listing them takes longer.

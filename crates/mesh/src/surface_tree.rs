@@ -280,6 +280,32 @@ impl SurfaceTree {
         }
     }
 
+    /// Enlarges boxes so that queries find `triangle`, which is new or has moved. Boxes are not made
+    /// smaller before the next [`update`](Self::update), which must list the triangle as changed
+    /// unless it is new. Takes time proportional to the depth of the tree at most, so that single
+    /// edits can be followed by queries.
+    ///
+    /// `bounds` and `neighbors` are as in [`update`](Self::update).
+    pub fn enlarge(&mut self, triangle: u32, bounds: &impl Fn(u32) -> Aabb, neighbors: [u32; 3]) {
+        let count = self.leaf_of.len().max(triangle as usize + 1);
+        self.leaf_of.resize(count, NONE);
+        self.following.resize(count, NONE);
+        if self.leaf_of[triangle as usize] == NONE {
+            self.insert(triangle, neighbors, bounds);
+        }
+        let around = bounds(triangle);
+        let mut node = self.leaf_of[triangle as usize];
+        while node != NONE {
+            let enlarged = self.nodes[node as usize].bounds.union(around);
+            if enlarged == self.nodes[node as usize].bounds {
+                // The boxes above contain this one.
+                break;
+            }
+            self.nodes[node as usize].bounds = enlarged;
+            node = self.nodes[node as usize].parent;
+        }
+    }
+
     /// The box around the triangles of a leaf, and whether any of them is removed.
     fn leaf_bounds(&self, leaf: u32, bounds: &impl Fn(u32) -> Aabb) -> (Aabb, bool) {
         self.of_leaf(leaf).map(bounds).fold((Aabb::EMPTY, false), |(around, has_removed), bounds| {

@@ -14,7 +14,7 @@ Coordinates and lengths are in model units. Arrays are C-contiguous. Arrays of a
 interpreter lock.
 """
 
-from isochore._native import Cancelled, DistanceField, Error, Mesh, RecipeError, Session, Tool
+from isochore._native import Cancelled, DistanceField, Error, Mesh, RecipeError, Session, Tool, remesh
 from isochore._recipe import Result, run, run_points
 
 __all__ = [
@@ -26,6 +26,7 @@ __all__ = [
     "Result",
     "Session",
     "Tool",
+    "remesh",
     "run",
     "run_points",
 ]

@@ -438,6 +438,23 @@ class Session:
         Raises Error if no stroke is in progress.
         """
 
+    def remesh(
+        self,
+        *,
+        edge_length: float | None = None,
+        deviation: float | None = None,
+        max_triangles: int | None = None,
+        progress: _Progress | None = None,
+    ) -> dict[str, Any]:
+        """Replaces the triangles of the surface by even ones and returns a receipt.
+
+        The arguments and the receipt are those of the function `remesh`. Undo restores all bits.
+        Frozen edges and vertices that the mask holds stay. A remesh is not part of the log.
+
+        Raises Error if a stroke is in progress, ValueError if an argument is out of range, and
+        Cancelled if `progress` returned False.
+        """
+
     def cancel_stroke(self) -> None:
         """Discards the stroke in progress. Raises Error if no stroke is in progress."""
 
@@ -558,6 +575,48 @@ class Session:
 
     def vertices_of_render_vertices(self) -> NDArray[np.uint32]:
         """Returns the vertex of each render vertex, (R,), or 2**32 - 1 if it has been removed."""
+
+def remesh(
+    mesh: Mesh | _HasVerticesAndFaces,
+    *,
+    edge_length: float | None = None,
+    deviation: float | None = None,
+    max_triangles: int | None = None,
+    progress: _Progress | None = None,
+) -> tuple[Mesh, dict[str, Any]]:
+    """Replaces the triangles of a mesh by even ones on the same surface.
+
+    Returns the mesh and a receipt. Seams, hard edges, borders between materials, the boundary and
+    sharp edges are kept, attributes are carried, and the volume of a closed mesh is restored. No
+    triangles that did not cross before cross afterwards.
+
+    edge_length: length of the edges, model units. By default edges are as long as `deviation`
+        allows.
+    deviation: largest distance between the surfaces before and after, as a fraction of the longest
+        side of the bounding box. By default 0.001, or a tenth of the edge length if that is given.
+    max_triangles: number of triangles at which splits stop.
+
+    The receipt has these keys:
+
+    triangles_before, triangles_after, splits, collapses, flips: counts.
+    is_limited: whether the limit on triangles prevented splits.
+    allowance: largest allowed distance between the surfaces, model units.
+    unlocked_volume_change, volume_change: signed volume changes before and after the volume lock,
+        cubic model units; None if the surface is open.
+    lock_max_shift, lock_skipped: as for `Session.end_stroke`.
+    undo_bytes, forgotten_strokes: memory of undo; zero outside a session.
+    seconds: elapsed time.
+
+    Raises Error if the mesh is not a manifold, consistently oriented surface, ValueError if an
+    argument is out of range, and Cancelled if `progress` returned False.
+
+    >>> import isochore
+    >>> sphere = {"kind": "icosphere", "radius": 1.0, "subdivisions": 4}
+    >>> ball = isochore.run({"recipe": 1, "target": {"shape": sphere}}).mesh
+    >>> remeshed, receipt = isochore.remesh(ball, edge_length=0.2)
+    >>> len(remeshed.triangles) < len(ball.triangles), abs(remeshed.volume / ball.volume - 1) < 1e-12
+    (True, True)
+    """
 
 class Result(NamedTuple):
     """Result of a recipe."""

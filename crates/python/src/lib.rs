@@ -7,6 +7,7 @@ mod error;
 mod keys;
 mod mesh;
 mod pickled;
+mod remesh;
 mod replay;
 mod session;
 mod tool;
@@ -22,6 +23,7 @@ mod _native {
         distance::DistanceField,
         error::{Cancelled, Error, RecipeError},
         mesh::Mesh,
+        remesh::remesh,
         replay::LoadedRecipe,
         session::Session,
         tool::Tool,

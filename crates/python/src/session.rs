@@ -26,7 +26,9 @@ use crate::{
     error::Failure,
     keys,
     mesh::{Mesh, mesh_of},
+    remesh,
     tool::Tool,
+    watch::watched,
 };
 
 /// A mesh that strokes deform one after another, with undo and redo.
@@ -128,6 +130,23 @@ impl Session {
     fn end_stroke<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>, Failure> {
         let receipt = self.change(py, |session| session.end_stroke().map_err(Failure::input))?;
         Ok(dicts::stroke_receipt(py, &receipt)?)
+    }
+
+    /// Replaces the triangles of the surface by even ones.
+    #[pyo3(signature = (*, edge_length = None, deviation = None, max_triangles = None, progress = None))]
+    fn remesh<'py>(
+        &self,
+        py: Python<'py>,
+        edge_length: Option<f64>,
+        deviation: Option<f64>,
+        max_triangles: Option<usize>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> Result<Bound<'py, PyDict>, Failure> {
+        let options = remesh::options(edge_length, deviation, max_triangles);
+        let receipt = watched(py, progress, |monitor| {
+            self.change_detached(|session| Ok(session.remesh(&options, monitor)?))
+        })?;
+        Ok(remesh::receipt(py, &receipt)?)
     }
 
     fn cancel_stroke(&self, py: Python<'_>) -> Result<(), Failure> {
@@ -327,15 +346,21 @@ impl Session {
         py: Python<'_>,
         change: impl FnOnce(&mut session::Session) -> Result<T, Failure> + Send,
     ) -> Result<T, Failure> {
-        py.detach(|| {
-            let mut session = self.lock();
-            if self.views.load(Ordering::Acquire) > 0 {
-                return Err(Failure::Raised(PyBufferError::new_err(
-                    "views of the session's buffers are still held; copy or delete them before changing the session",
-                )));
-            }
-            change(&mut session)
-        })
+        py.detach(|| self.change_detached(change))
+    }
+
+    /// [`change`](Self::change) for a thread that does not hold the global interpreter lock.
+    fn change_detached<T>(
+        &self,
+        change: impl FnOnce(&mut session::Session) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let mut session = self.lock();
+        if self.views.load(Ordering::Acquire) > 0 {
+            return Err(Failure::Raised(PyBufferError::new_err(
+                "views of the session's buffers are still held; copy or delete them before changing the session",
+            )));
+        }
+        change(&mut session)
     }
 
     /// Creates a view of the rows of a buffer. The session cannot change while the view is alive.

@@ -85,6 +85,7 @@
 pub mod files;
 mod point_flow;
 pub mod recipe;
+mod remesh;
 mod replay;
 mod report;
 mod scene;
@@ -94,6 +95,7 @@ mod stream_report;
 
 pub use point_flow::{PointFlow, PointReplay, StreamProblem, replay_points};
 pub use recipe::Recipe;
+pub use remesh::{RemeshError, Remeshed, remesh};
 pub use replay::{Replay, ReplayError, replay};
 pub use report::{Bounds, Certificate, Measures, Report, Seconds, SheetsReport, Source, StrokeReport};
 pub use scene::{BuildToolError, MaskProblem, Meshes, Scene, SceneError, SceneProblem, ShapeProblem, build_tool};

@@ -61,6 +61,7 @@ mod origin;
 mod query;
 mod receipt;
 mod refinement;
+mod remesh;
 mod sculpting;
 mod selection;
 mod shading;
@@ -82,6 +83,7 @@ pub use log::SessionReplayError;
 pub use options::{InteractiveRefinement, NormalWeights, SessionOptions, StrokeOptions};
 pub use query::{Arrow, Hit};
 pub use receipt::{History, LockSkipped, MoveReceipt, MoveSeconds, StrokeReceipt, StrokeVolume};
+pub use remesh::{RemeshOptions, RemeshReceipt};
 pub use supplies::Supplies;
 pub use tool::SessionTool;
 pub use volume::MovedVolume;
@@ -91,7 +93,7 @@ use crate::{
     scene,
 };
 use history::Steps;
-use log::LoggedStroke;
+use log::Logged;
 use stroke::ActiveStroke;
 use surface::Surface;
 
@@ -263,8 +265,8 @@ impl Session {
         sum.value()
     }
 
-    fn logged(&self) -> impl Iterator<Item = &LoggedStroke> {
-        self.steps.forgotten.iter().chain(self.steps.done.iter().map(|step| &step.stroke))
+    fn logged(&self) -> impl Iterator<Item = &Logged> {
+        self.steps.forgotten.iter().chain(self.steps.done.iter().map(|step| &step.logged))
     }
 }
 

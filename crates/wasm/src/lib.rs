@@ -12,6 +12,7 @@
 mod error;
 mod mesh;
 mod options;
+mod remesh;
 mod replay;
 mod session;
 mod tool;

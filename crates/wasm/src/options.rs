@@ -59,6 +59,17 @@ export interface StrokeOptions {
   keep?: ArrayLike<number>;
 }
 
+/** Options of a remesh. */
+export interface RemeshOptions {
+  /** Length of the edges, model units. By default edges are as long as `deviation` allows. */
+  edgeLength?: number;
+  /** Largest distance between the surfaces before and after, as a fraction of the longest side of the bounding box. Default:
+   * 0.001, or a tenth of the edge length if that is given. */
+  deviation?: number;
+  /** Splits stop at this number of triangles. */
+  maxTriangles?: number;
+}
+
 /** Options of a preview. */
 export interface PreviewOptions {
   /** Number of points along the longest side of the support, at most 64. Default: 12. */
@@ -116,6 +127,15 @@ unsafe extern "C" {
     pub fn max_triangles(this: &StrokeOptions) -> Option<f64>;
     #[wasm_bindgen(method, getter)]
     pub fn keep(this: &StrokeOptions) -> Option<Vec<f64>>;
+
+    #[wasm_bindgen(extends = Object, typescript_type = "RemeshOptions")]
+    pub type RemeshOptions;
+    #[wasm_bindgen(method, getter, js_name = edgeLength)]
+    pub fn edge_length(this: &RemeshOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    pub fn deviation(this: &RemeshOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter, js_name = maxTriangles)]
+    pub fn max_triangles(this: &RemeshOptions) -> Option<f64>;
 
     #[wasm_bindgen(extends = Object, typescript_type = "PreviewOptions")]
     pub type PreviewOptions;

@@ -6,6 +6,7 @@ mod receipt;
 use std::sync::Arc;
 
 use isochore_field::Pose;
+use isochore_mesh::NoProgress;
 use isochore_sculpt::{
     recipe::{Key, VertexWeights},
     session::{self, DirtyRange, InteractiveRefinement, NormalWeights},
@@ -18,7 +19,8 @@ use receipt::{History, MoveReceipt, StrokeReceipt};
 use crate::{
     error::thrown,
     mesh::Mesh,
-    options::{SessionOptions, StrokeOptions, count, keys, numbers, options},
+    options::{RemeshOptions, SessionOptions, StrokeOptions, count, keys, numbers, options},
+    remesh::{RemeshReceipt, chosen},
     tool::Tool,
 };
 
@@ -111,6 +113,14 @@ impl Session {
     #[wasm_bindgen(js_name = endStroke)]
     pub fn end_stroke(&mut self) -> Result<StrokeReceipt, JsError> {
         Ok(StrokeReceipt { receipt: self.session.end_stroke().map_err(thrown)? })
+    }
+
+    /// Replaces the triangles of the surface by even ones, as the function `remesh` does. Undo
+    /// restores all bits. Frozen edges and vertices that the mask holds stay. A remesh is not part of
+    /// the log. Throws if a stroke is in progress or an option is out of range.
+    pub fn remesh(&mut self, options: Option<RemeshOptions>) -> Result<RemeshReceipt, JsError> {
+        let receipt = self.session.remesh(&chosen(options)?, &NoProgress).map_err(thrown)?;
+        Ok(RemeshReceipt { receipt })
     }
 
     /// Whether a stroke is in progress.

@@ -22,3 +22,9 @@ pub(super) fn length(text: &str) -> Result<f64, &'static str> {
     let length = text.parse().ok().filter(|length: &f64| length.is_finite() && *length >= 0.0);
     length.ok_or("give a finite length, 0 or more")
 }
+
+/// Parses a number above zero.
+pub(super) fn positive(text: &str) -> Result<f64, &'static str> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    number.ok_or("give a finite number above 0")
+}

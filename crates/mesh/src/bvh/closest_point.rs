@@ -44,6 +44,20 @@ pub(crate) struct OnTriangle {
     pub(crate) feature: Feature,
 }
 
+/// The point of a triangle that is nearest to `point`, and the square of its distance.
+///
+/// ```
+/// use glam::{DVec3, dvec3};
+/// use isochore_mesh::nearest_on_triangle;
+///
+/// let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+/// assert_eq!(nearest_on_triangle(dvec3(-1.0, 0.5, 2.0), &triangle), (dvec3(0.0, 0.5, 0.0), 5.0));
+/// ```
+pub fn nearest_on_triangle(point: DVec3, corners: &[DVec3; 3]) -> (DVec3, f64) {
+    let (nearest, squared) = closest_on_triangle(point, corners);
+    (nearest.point, squared)
+}
+
 /// Returns the nearest point of a triangle and its squared distance.
 ///
 /// Every candidate is a convex combination of corners, so the result is on the triangle even if the

@@ -84,8 +84,8 @@ fn edit(mesh: &mut EditMesh, kind: u8, pick: u32) -> Option<isize> {
             0
         }),
         _ => mesh.can_collapse(half_edge).then(|| {
-            mesh.collapse(half_edge);
-            -2
+            let count = mesh.collapse(half_edge).triangles.into_iter().filter(|&triangle| triangle != NONE).count();
+            -(count as isize)
         }),
     }
 }
@@ -175,6 +175,29 @@ fn slots_are_reused_after_the_recording_that_freed_them() {
 fn tetrahedron_allows_neither_collapse_nor_flip() {
     let mesh = EditMesh::new(&[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]], 4).unwrap();
     assert!((0..12).all(|half_edge| !mesh.can_collapse(half_edge) && !mesh.can_flip(half_edge)));
+}
+
+#[test]
+fn collapse_of_a_boundary_edge_removes_one_triangle() {
+    let mut mesh = edit_mesh(&square(2));
+    // From the middle of the lower side to the right corner.
+    let half_edge = mesh.half_edge(1, 2).unwrap();
+    assert!(mesh.can_collapse(half_edge));
+    assert_eq!(mesh.collapse(half_edge).triangles[1], NONE);
+    assert_sound(&mesh);
+    assert_eq!(mesh.alive(), 7);
+    // An ear: the lower left corner has one triangle now, and two edges on the boundary.
+    let ear = (0..9).find(|&vertex| mesh.is_boundary(vertex) && mesh.fan(vertex).count() == 1).unwrap();
+    let half_edge = mesh.outgoing(ear);
+    assert!(mesh.can_collapse(half_edge));
+    mesh.collapse(half_edge);
+    assert_sound(&mesh);
+    // A vertex of the boundary is not merged into the interior, and a single triangle remains.
+    let inward = (0..mesh.triangles().len() as u32 * 3)
+        .filter(|&edge| mesh.triangles()[edge as usize / 3].is_alive() && mesh.twin(edge) != NONE);
+    assert!(inward.filter(|&edge| mesh.is_boundary(mesh.start(edge))).all(|edge| !mesh.can_collapse(edge)));
+    let island = EditMesh::new(&[[0, 1, 2]], 3).unwrap();
+    assert!((0..3).all(|half_edge| !island.can_collapse(half_edge)));
 }
 
 #[test]

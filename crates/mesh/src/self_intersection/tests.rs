@@ -174,6 +174,44 @@ proptest! {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+    #[test]
+    fn patch_agrees_with_single_pairs(
+        coordinates in prop::collection::vec((-2..=2_i64, -2..=2_i64, -2..=2_i64), 9..60),
+        patch in 1..4_usize,
+        near in 0..20_usize,
+        spread in prop::sample::select(vec![0.0, 1e-16, 1e-3, 1.0]),
+        scale in prop::sample::select(vec![1e-200, 1.0, 1e12, 1e200]),
+    ) {
+        // Most lattice points are far from the patch, so that patches without crossings occur.
+        let corner = |(i, &(x, y, z)): (usize, &(i64, i64, i64))| {
+            let jitter = |k: f64| spread * ((i as f64 + 1.0) * k).fract();
+            let point = dvec3(x as f64 + jitter(0.618), y as f64 + jitter(0.414), z as f64 + jitter(0.732));
+            scale * (point + if i < near { 0.0 } else { 3.0 * i as f64 })
+        };
+        let points: Vec<DVec3> = coordinates.iter().enumerate().map(corner).collect();
+        let triangles: Vec<[DVec3; 3]> = points.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
+        let (patch, surroundings) = triangles.split_at(patch.min(triangles.len()));
+        let expected = (0..patch.len()).any(|i| {
+            patch[i + 1..].iter().chain(surroundings).any(|&other| triangles_intersect(patch[i], other))
+        });
+        prop_assert_eq!(patch_intersects(patch, surroundings), expected);
+    }
+}
+
+#[test]
+fn coarse_surroundings_of_a_patch_do_not_overflow() {
+    let patch = [FLAT.map(|corner| 1e-3 * DVec3::from_array(corner))];
+    for size in [1e3, 1e6, 1e9, 1e30, 1e90] {
+        let floor = |z: f64| [dvec3(-size, -size, z), dvec3(size, -size, z), dvec3(0.0, size, z)];
+        assert!(!patch_intersects(&patch, &[floor(-1e-4)]), "{size}");
+        assert!(patch_intersects(&patch, &[floor(0.0)]), "{size}");
+    }
+    assert!(!patch_intersects(&[], &patch));
+    assert!(!patch_intersects(&patch, &[]));
+}
+
+proptest! {
     #[test]
     fn agrees_with_exact_integers(coordinates in prop::array::uniform18(-2..=2_i64)) {
         // On a small lattice all kinds of contact are common, and integer determinants are exact.

@@ -103,6 +103,45 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn enlarged_tree_agrees_with_brute_force(
+        seed in 0.01..2.0_f64,
+        known in 0..320_usize,
+        edited in prop::collection::vec(0..320_u32, 0..80),
+        point in prop::array::uniform3(-2.0..2.0_f64),
+        direction in prop::array::uniform3(-1.0..1.0_f64),
+    ) {
+        let rest = icosphere(1.0, 2);
+        let mut tree = SurfaceTree::new(&rest.positions, &rest.triangles[..known]).unwrap();
+        let elsewhere = moved(&rest, seed);
+        // Each edited triangle moves on its own, so that the others keep their boxes.
+        let mut mesh = TriMesh::new(Vec::new(), Vec::new());
+        let mut alive = vec![false; rest.triangles.len()];
+        let count = edited.iter().map(|&triangle| triangle as usize + 1).max().unwrap_or(0).max(known);
+        for triangle in 0..rest.triangles.len() {
+            let is_edited = edited.contains(&(triangle as u32));
+            mesh.positions.extend(if is_edited { &elsewhere } else { &rest }.corners(triangle));
+            mesh.triangles.push([0, 1, 2].map(|side| 3 * triangle as u32 + side));
+            alive[triangle] = triangle < known || is_edited;
+        }
+        for &triangle in &edited {
+            let slow = Slow(&mesh, &alive);
+            tree.enlarge(triangle, &|triangle| slow.bounds(triangle), [NONE, triangle + 1, NONE]);
+        }
+        prop_assert_eq!(tree.len(), count);
+        Slow(&mesh, &alive).assert_agrees(&tree, point.into(), direction.into());
+        // The update removes some, and makes the boxes small again.
+        edited.iter().step_by(2).for_each(|&triangle| alive[triangle as usize] = false);
+        let slow = Slow(&mesh, &alive);
+        let beside = |triangle: u32| alive[triangle as usize].then_some([NONE; 3]);
+        tree.update(rest.triangles.len(), &edited, &|triangle| slow.bounds(triangle), &beside);
+        slow.assert_agrees(&tree, point.into(), direction.into());
+        prop_assert_eq!(tree.nodes[0].bounds, Aabb::of((0..320).filter_map(|triangle| slow.corners(triangle)).flatten()));
+    }
+}
+
 #[test]
 fn ray_hits_the_near_side_first() {
     let mesh = icosphere(1.0, 3);

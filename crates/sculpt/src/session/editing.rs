@@ -131,34 +131,42 @@ impl Surface {
     }
 
     /// Merges the start of a half-edge into its end and returns the volume that this adds. Requires
-    /// [`EditMesh::can_collapse`] and [`is_free`](Self::is_free).
+    /// [`EditMesh::can_collapse`], and that the start [is free](Self::is_free) or that it is between
+    /// two edges of one seam, of which the half-edge is one.
     ///
     /// [`EditMesh::can_collapse`]: isochore_mesh::EditMesh::can_collapse
     pub(super) fn collapse(&mut self, half_edge: u32) -> f64 {
         let twin = self.topology.twin(half_edge);
         let gained = self.volume_of_collapse(half_edge);
-        let [removed, kept] = [half_edge, next_half_edge(half_edge)].map(|half_edge| self.corner(half_edge));
-        let (side, far_side) = (half_edge as usize % 3, twin as usize % 3);
-        let (patch, far_patch) = (self.patches.get(half_edge / 3), self.patches.get(twin / 3));
-        // Outer edges of the two removed triangles: each passes its hard-edge bit to the edge it is
-        // merged with.
-        let inherited = [
-            (self.topology.twin(previous_half_edge(half_edge)), bit(patch, side + 1)),
-            (self.topology.twin(next_half_edge(twin)), bit(far_patch, far_side + 2)),
-        ];
+        // The render vertices of start and end on each side.
+        let near = [half_edge, next_half_edge(half_edge)].map(|half_edge| self.corner(half_edge));
+        let far =
+            if twin == NONE { near } else { [next_half_edge(twin), twin].map(|half_edge| self.corner(half_edge)) };
+        // Outer edges of the removed triangles: each passes its hard-edge bit to the edge it is merged
+        // with.
+        let mut inherited = [(NONE, 0); 2];
+        let patch = self.patches.get(half_edge / 3);
+        inherited[0] = (self.topology.twin(previous_half_edge(half_edge)), bit(patch, half_edge as usize % 3 + 1));
+        if twin != NONE {
+            let patch = self.patches.get(twin / 3);
+            inherited[1] = (self.topology.twin(next_half_edge(twin)), bit(patch, twin as usize % 3 + 2));
+        }
         let [start, end] = [self.topology.start(half_edge), self.topology.end(half_edge)];
         let fan: Vec<u32> = self.topology.fan(start).collect();
         self.topology.collapse(half_edge);
         self.merges.push([start, end]);
-        // A free vertex has one render vertex for all its triangles.
-        self.remove_render_vertex(removed);
+        self.remove_render_vertex(near[0]);
+        if far[0] != near[0] {
+            self.remove_render_vertex(far[0]);
+        }
         for outgoing in fan {
             let mut corners = self.corners.get(outgoing / 3);
-            corners[outgoing as usize % 3] = kept;
+            let corner = &mut corners[outgoing as usize % 3];
+            *corner = if *corner == near[0] { near[1] } else { far[1] };
             let is_alive = self.topology.triangles()[outgoing as usize / 3].is_alive();
             self.set_corners(outgoing / 3, if is_alive { corners } else { [0; 3] });
         }
-        for (half_edge, hard) in inherited {
+        for (half_edge, hard) in inherited.into_iter().filter(|&(half_edge, _)| half_edge != NONE) {
             let patch = self.patches.get(half_edge / 3);
             let side = half_edge % 3;
             self.set_patch(half_edge / 3, Patch { hard: patch.hard & !(1 << side) | hard << side, ..patch });

@@ -1,7 +1,7 @@
 //! Errors of sessions.
 
 use isochore_field::StrokeError;
-use isochore_mesh::{BvhError, EditMeshError, MeshError};
+use isochore_mesh::{BvhError, Cancelled, EditMeshError, MeshError};
 
 use crate::{
     recipe::{InvalidRecipe, NumberProblem, RecipeError},
@@ -80,6 +80,12 @@ pub enum SessionError {
     /// A length or fraction of the refinement is out of range.
     #[error("refinement: {0}")]
     Refinement(&'static str),
+    /// A length or fraction of a remesh is out of range.
+    #[error("remesh: {0}")]
+    Remesh(&'static str),
+    /// The monitor stopped the work.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The vertex does not exist.
     #[error("vertex {vertex} is out of range: the mesh has {count} vertices")]
     NoVertex {

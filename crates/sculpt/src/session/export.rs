@@ -79,15 +79,18 @@ impl Session {
         Exported { mesh, vertices, lock }
     }
 
+    /// The point of the mesh as opened that a vertex takes its attributes from.
     fn vertex_origin(&self, vertex: u32) -> VertexOrigin {
-        if (vertex as usize) < self.surface.opened.positions.len() {
-            return VertexOrigin::Vertex(vertex);
+        let surface = &self.surface;
+        let outgoing = surface.topology.outgoing(vertex);
+        // A vertex with triangles has render vertices with origins.
+        let origin = (outgoing != NONE).then(|| surface.render.get(surface.corner(outgoing)).origin).flatten();
+        let Some(origin) = origin else { return VertexOrigin::Vertex(vertex) };
+        // A remesh moves vertices of the mesh as opened to other points of it.
+        let corners = surface.opened.triangles[origin.triangle as usize];
+        match origin.weights.to_array().iter().position(|&weight| weight == 1.0) {
+            Some(side) if corners[side] == vertex => VertexOrigin::Vertex(vertex),
+            _ => VertexOrigin::Point(origin),
         }
-        let outgoing = self.surface.topology.outgoing(vertex);
-        let origin =
-            (outgoing != NONE).then(|| self.surface.render.get(self.surface.corner(outgoing)).origin).flatten();
-        // An inserted vertex that is not removed has triangles, and so its render vertices have
-        // origins.
-        origin.map_or(VertexOrigin::Vertex(0), VertexOrigin::Point)
     }
 }

@@ -2,19 +2,19 @@
 
 use std::collections::VecDeque;
 
-use super::{History, log::LoggedStroke, surface::delta::SurfaceDelta};
+use super::{History, log::Logged, surface::delta::SurfaceDelta};
 
-/// A stroke with the difference between the states before and after it.
+/// A stroke or remesh with the difference between the states before and after it.
 #[derive(Debug, Clone)]
 pub(super) struct Step {
-    pub(super) stroke: LoggedStroke,
+    pub(super) logged: Logged,
     pub(super) delta: SurfaceDelta,
 }
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Steps {
     /// Strokes that can no longer be undone.
-    pub(super) forgotten: Vec<LoggedStroke>,
+    pub(super) forgotten: Vec<Logged>,
     pub(super) done: VecDeque<Step>,
     /// The last one is the next to redo.
     pub(super) undone: Vec<Step>,
@@ -31,7 +31,7 @@ impl Steps {
         while bytes > most && self.done.len() > 1 {
             let Some(oldest) = self.done.pop_front() else { break };
             bytes -= oldest.bytes();
-            self.forgotten.push(oldest.stroke);
+            self.forgotten.push(oldest.logged);
             dropped += 1;
         }
         dropped
@@ -53,6 +53,7 @@ impl Steps {
 
 impl Step {
     pub(super) fn bytes(&self) -> usize {
-        self.delta.bytes() + self.stroke.keys.capacity() * size_of::<crate::recipe::Key>()
+        self.delta.bytes()
+            + self.logged.path.as_ref().map_or(0, |path| path.keys.capacity() * size_of::<crate::recipe::Key>())
     }
 }

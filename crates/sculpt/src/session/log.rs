@@ -12,15 +12,22 @@ use crate::{
     scene::SceneError,
 };
 
-/// A stroke as recorded in the log.
+/// A stroke or remesh as recorded.
 #[derive(Debug, Clone)]
-pub(super) struct LoggedStroke {
-    pub(super) tool: Arc<SessionTool>,
-    pub(super) keys: Vec<Key>,
+pub(super) struct Logged {
+    /// `None` for a remesh.
+    pub(super) path: Option<ToolPath>,
     /// Total change of the volume before any lock.
     pub(super) volume_change: Option<f64>,
     /// Change of the shown volume: what remains after the lock.
     pub(super) shown_change: f64,
+}
+
+/// The part of a stroke that the log contains.
+#[derive(Debug, Clone)]
+pub(super) struct ToolPath {
+    pub(super) tool: Arc<SessionTool>,
+    pub(super) keys: Vec<Key>,
 }
 
 /// Errors of [`Session::replay`].
@@ -110,7 +117,7 @@ impl Session {
     pub fn log(&self) -> Recipe {
         let mut tools: BTreeMap<String, Arc<SessionTool>> = BTreeMap::new();
         let mut strokes = Vec::new();
-        for stroke in self.logged() {
+        for stroke in self.logged().filter_map(|logged| logged.path.as_ref()) {
             // A different tool of the same name gets a number.
             let mut name = stroke.tool.name().to_owned();
             let mut number = 2;

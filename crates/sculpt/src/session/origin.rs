@@ -19,15 +19,37 @@ pub(super) fn midpoint_origin(mesh: &TriMesh, ends: [Origin; 2], parent: u32) ->
         }
     }
     let middle = 0.5 * (mesh.point_at(&ends[0]) + mesh.point_at(&ends[1]));
-    let nearest = candidates.map(|triangle| {
-        let weights = nearest_weights(middle, &mesh.corners(triangle as usize));
+    nearest_origin(mesh, candidates, middle)
+}
+
+/// The point of the mesh with these barycentric coordinates between three of its points.
+///
+/// If the three are in different triangles that have no edge in common, the result is the nearest
+/// point in the triangle `parent` and in those of the three.
+pub(super) fn blended_origin(mesh: &TriMesh, corners: [Origin; 3], weights: DVec3, parent: u32) -> Origin {
+    let candidates = [parent, corners[0].triangle, corners[1].triangle, corners[2].triangle];
+    for triangle in candidates {
+        let within = corners.map(|corner| weights_in(mesh, &corner, triangle));
+        if let [Some(a), Some(b), Some(c)] = within {
+            return Origin { triangle, weights: weights.x * a + weights.y * b + weights.z * c };
+        }
+    }
+    let [a, b, c] = corners.map(|corner| mesh.point_at(&corner));
+    nearest_origin(mesh, candidates, weights.x * a + weights.y * b + weights.z * c)
+}
+
+/// The point nearest to `point` in some triangles. Ties go to the first.
+fn nearest_origin<const COUNT: usize>(mesh: &TriMesh, triangles: [u32; COUNT], point: DVec3) -> Origin {
+    let mut best = (f64::INFINITY, Origin { triangle: triangles[0], weights: DVec3::X });
+    for triangle in triangles {
+        let weights = nearest_weights(point, &mesh.corners(triangle as usize));
         let origin = Origin { triangle, weights };
-        (mesh.point_at(&origin).distance_squared(middle), origin)
-    });
-    nearest
-        .into_iter()
-        .reduce(|best, other| if other.0 < best.0 { other } else { best })
-        .map_or(ends[0], |(_, origin)| origin)
+        let squared = mesh.point_at(&origin).distance_squared(point);
+        if squared < best.0 {
+            best = (squared, origin);
+        }
+    }
+    best.1
 }
 
 /// Barycentric coordinates of `origin` in another triangle that contains it on an edge or at a

@@ -8,7 +8,7 @@ use super::{
     InteractiveRefinement, LockSkipped, MoveReceipt, Session, SessionError, SessionTool, StrokeOptions, StrokeReceipt,
     history::Step,
     locking::Locked,
-    log::{self, LoggedStroke},
+    log::{self, Logged, ToolPath},
     stroke::{ActiveStroke, Segment},
 };
 use crate::recipe::Key;
@@ -112,9 +112,8 @@ impl Session {
             return Ok(receipt);
         }
         let volume_change = receipt.volume.map(|volume| volume.total());
-        let stroke =
-            LoggedStroke { tool: stroke.tool, keys: stroke.keys, volume_change, shown_change: locked.shown_change };
-        let step = Step { stroke, delta };
+        let path = Some(ToolPath { tool: stroke.tool, keys: stroke.keys });
+        let step = Step { logged: Logged { path, volume_change, shown_change: locked.shown_change }, delta };
         receipt.undo_bytes = step.bytes();
         receipt.forgotten_strokes = self.steps.push(step, self.options.undo_bytes);
         Ok(receipt)

@@ -8,6 +8,7 @@ mod own_tools;
 mod queries;
 mod random_calls;
 mod refinement;
+mod remesh;
 mod replay;
 mod reuse;
 mod undo;

@@ -1,5 +1,7 @@
 //! The render buffers of the surface.
 
+use isochore_mesh::Origin;
+
 use super::{Patch, RenderVertex, Surface};
 use crate::session::buffers::{Changes, RenderBuffers};
 
@@ -54,6 +56,13 @@ impl Surface {
         self.dirty.positions.mark(index);
         self.dirty.normals.mark(index);
         index
+    }
+
+    /// Sets the point of the mesh as opened that a render vertex takes its attributes from.
+    pub(in crate::session) fn set_origin(&mut self, index: u32, origin: Option<Origin>) {
+        let render = self.render.get(index);
+        self.render.set(index, RenderVertex { origin, ..render });
+        self.renewed.push(index);
     }
 
     /// Removes a render vertex that no triangle uses.
