@@ -34,7 +34,7 @@ pub(super) fn set(mesh: &mut TriMesh, attributes: &MeshAttributes) -> Result<(),
     match (attributes.materials(), attributes.triangle_materials()) {
         (None, None) => {}
         (Some(names), Some(indices)) => mesh.set_materials(names, indices).map_err(thrown)?,
-        _ => return Err(thrown("materials and triangleMaterials must be attributes together")),
+        _ => return Err(thrown("materials and triangleMaterials must be given together")),
     }
     let (joints, weights) = (attributes.joints(), attributes.weights());
     if joints.is_some() || weights.is_some() {
