@@ -30,6 +30,9 @@ pub(crate) fn distance(arguments: &DistanceArguments, console: &Console) -> Resu
     let metadata_draft = staging.add_file(&arguments.output.with_extension("json"))?;
 
     let mesh = io::read(&arguments.mesh)?;
+    for note in &mesh.assets.notes {
+        console.warn("warning", format_args!("{}: {note}", arguments.mesh.display()));
+    }
     let options = DistanceFieldOptions {
         resolution: arguments.resolution as usize,
         padding: arguments.padding.map_or(Padding::Cells(2), Padding::Length),

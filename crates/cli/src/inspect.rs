@@ -25,6 +25,9 @@ struct Statistics {
 
 pub(crate) fn inspect(arguments: &InspectArguments, console: &Console) -> Result<Outcome, CommandError> {
     let mesh = io::read(&arguments.mesh)?;
+    for note in &mesh.assets.notes {
+        console.warn("warning", format_args!("{}: {note}", arguments.mesh.display()));
+    }
     let statistics = Statistics::of(&mesh, console).map_err(|error| match error {
         SelfIntersectionError::Cancelled(cancelled) => cancelled.into(),
         error => CommandError::file(&arguments.mesh, error),

@@ -32,8 +32,10 @@ pub(crate) struct Staging {
 struct Staged {
     /// Temporary path.
     draft: PathBuf,
-    /// Final path.
+    /// Path as the user named it.
     target: PathBuf,
+    /// Path to replace: `target` behind its symbolic links.
+    place: PathBuf,
 }
 
 impl Staging {
@@ -58,16 +60,18 @@ impl Staging {
     /// Adds the file `target`. Returns the path of its draft.
     ///
     /// # Errors
-    /// The folder of `target` is missing or cannot be written, `target` exists and is not a regular
+    /// `target` is a circle of symbolic links. The folder of `target` is missing or cannot be written, `target` exists and is not a regular
     /// file, or it was added before.
     pub(crate) fn add_file(&mut self, target: &Path) -> Result<PathBuf, CommandError> {
-        if self.files.iter().any(|staged| staged.target == target) {
+        let place = mesh_io::follow_links(target).map_err(|error| CommandError::cannot("write", target, &error))?;
+        if self.files.iter().any(|staged| staged.place == place) {
             return Err(CommandError::file(target, "two outputs have this path; rename one"));
         }
         if fs::metadata(target).is_ok_and(|metadata| !metadata.is_file()) {
             return Err(CommandError::file(target, "is not a regular file; choose another name"));
         }
-        let folder = parent(target);
+        // The draft must be in the file system of the place, so that it can be moved there.
+        let folder = parent(&place);
         let folder = if self.new_folders.iter().any(|new| new == folder) { parent(folder) } else { folder };
         // The draft keeps the name, because its extension selects the format.
         let name = target.file_name().ok_or_else(|| CommandError::file(target, "the path has no file name"))?;
@@ -75,7 +79,7 @@ impl Staging {
         let slot = self.temporary_folder(folder)?.join(index);
         fs::create_dir(&slot).map_err(|error| CommandError::cannot("write", target, &error))?;
         let draft = slot.join(name);
-        self.files.push(Staged { draft: draft.clone(), target: target.to_owned() });
+        self.files.push(Staged { draft: draft.clone(), target: target.to_owned(), place });
         Ok(draft)
     }
 
@@ -130,20 +134,20 @@ impl Staging {
             fs::create_dir(folder).map_err(|error| CommandError::cannot("create", folder, &error))?;
             undo.steps.push(Step::RemoveFolder(folder.clone()));
         }
-        for Staged { draft, target } in &self.files {
+        for Staged { draft, target, place } in &self.files {
             let cannot = |error: io::Error| CommandError::cannot("write", target, &error);
-            let mut step = Step::RemoveFile(target.clone());
-            if let Ok(metadata) = fs::metadata(target) {
+            let mut step = Step::RemoveFile(place.clone());
+            if let Ok(metadata) = fs::metadata(place) {
                 // Beside the slot of the draft, not in it: there the name could collide with that
                 // of the output.
                 let kept = parent(draft).with_extension("previous");
                 // A link keeps the target in place until it is replaced. Some file systems have no
                 // links and need a copy.
-                fs::hard_link(target, &kept).or_else(|_| fs::copy(target, &kept).map(drop)).map_err(cannot)?;
+                fs::hard_link(place, &kept).or_else(|_| fs::copy(place, &kept).map(drop)).map_err(cannot)?;
                 fs::set_permissions(draft, metadata.permissions()).map_err(cannot)?;
-                step = Step::Restore { kept, target: target.clone() };
+                step = Step::Restore { kept, target: place.clone() };
             }
-            fs::rename(draft, target).map_err(cannot)?;
+            fs::rename(draft, place).map_err(cannot)?;
             undo.steps.push(step);
         }
         undo.steps.clear();
@@ -239,6 +243,35 @@ mod tests {
         staging.commit().unwrap();
         assert_eq!(names(folder.path()), ["a.txt", "frames"]);
         assert_eq!(names(&frames), ["b.txt"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn writes_through_symbolic_links() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let inner = folder.path().join("inner");
+        fs::create_dir(&inner).unwrap();
+        fs::write(inner.join("old.txt"), "old").unwrap();
+        // To a file, to another link, and to a file that does not exist yet.
+        symlink("inner/old.txt", folder.path().join("a.txt")).unwrap();
+        symlink(folder.path().join("inner/new.txt"), folder.path().join("b.txt")).unwrap();
+        symlink("b.txt", folder.path().join("c.txt")).unwrap();
+        let mut staging = Staging::new(&Interrupt::default());
+        for name in ["a.txt", "c.txt"] {
+            let draft = staging.add_file(&folder.path().join(name)).unwrap();
+            staging.write(&draft, b"new").unwrap();
+        }
+        assert!(staging.add_file(&folder.path().join("b.txt")).is_err(), "the same file as c.txt");
+        staging.commit().unwrap();
+        for name in ["a.txt", "b.txt", "c.txt"] {
+            assert!(fs::symlink_metadata(folder.path().join(name)).unwrap().is_symlink(), "{name}");
+            assert_eq!(fs::read(folder.path().join(name)).unwrap(), b"new", "{name}");
+        }
+        assert_eq!(names(&inner), ["new.txt", "old.txt"]);
+        symlink("circle.txt", folder.path().join("circle.txt")).unwrap();
+        let mut staging = Staging::new(&Interrupt::default());
+        assert!(staging.add_file(&folder.path().join("circle.txt")).is_err());
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Contents of a mesh file that this crate carries but does not interpret.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Contents of a mesh file beyond geometry and attributes, carried from reading to writing.
@@ -9,6 +10,11 @@ pub struct Assets {
     pub names: Names,
     /// Material libraries that an OBJ file refers to.
     pub material_libraries: Vec<String>,
+    /// Bytes of material and library names that an OBJ file does not encode in UTF-8, by the names
+    /// shown for them. Writing OBJ restores the bytes.
+    pub raw_names: BTreeMap<String, Vec<u8>>,
+    /// What the reader left out or replaced, one sentence each, for warnings.
+    pub notes: Vec<String>,
     /// Materials, textures, images, samplers, skin and skeleton of a glTF file.
     pub gltf: Option<Arc<GltfAssets>>,
 }

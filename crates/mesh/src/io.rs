@@ -17,14 +17,17 @@
 //! ```
 
 mod by_corner;
+mod element;
 mod format;
 mod gltf;
+mod links;
 mod obj;
 mod off;
 mod ply;
 mod point_stream;
 mod polygon;
 mod read_error;
+mod sniff;
 mod split;
 mod stl;
 mod text;
@@ -35,13 +38,14 @@ use std::io::{Read, Write};
 use std::path::Path;
 
 pub use format::Format;
+pub use links::follow_links;
 pub use point_stream::{PointStream, PointStreamError};
 pub use read_error::{LineProblem, ParseError, ReadError};
 pub use split::SplitVertices;
 pub use write_error::WriteError;
 
+use crate::TriMesh;
 use crate::huge_pages::in_huge_pages;
-use crate::{CornerAttributes, TriMesh};
 
 /// Reads the mesh file at `path`, and the files that it refers to, relative to its folder.
 ///
@@ -109,8 +113,9 @@ pub fn read_bytes(format: Format, bytes: &[u8]) -> Result<TriMesh, ParseError> {
 /// Returns the bytes of a referenced file, given its path relative to the referring file.
 type Resolve<'a> = &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>;
 
-fn parse(format: Format, bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, ParseError> {
-    let (mesh, has_finite_corners) = match format {
+fn parse(announced: Format, bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, ParseError> {
+    let format = sniff::format_of(bytes)?.unwrap_or(announced);
+    let (mut mesh, has_finite_corners) = match format {
         Format::Obj => (obj::parse(bytes)?, false),
         Format::Ply => (ply::parse(bytes)?, false),
         Format::Stl => (stl::parse(bytes)?, false),
@@ -122,48 +127,17 @@ fn parse(format: Format, bytes: &[u8], resolve: Resolve<'_>) -> Result<TriMesh, 
         return Err(ParseError::Empty);
     }
     mesh.check_valid()?;
-    check_attributes(&mesh, has_finite_corners)?;
+    element::mend_attributes(&mut mesh, has_finite_corners);
+    if format.name() != announced.name() {
+        let (found, expected) = (format.name(), announced.name());
+        mesh.assets.notes.push(format!("the content is {found}, not {expected}; it was read as {found}"));
+    }
     Ok(mesh)
 }
 
-/// Refuses interpolated attributes that are not finite, since one bad number would spread.
-/// Corners that the reader has already checked are skipped.
-fn check_attributes(mesh: &TriMesh, has_finite_corners: bool) -> Result<(), ParseError> {
-    if !has_finite_corners {
-        check_corners(&mesh.corner)?;
-    }
-    let is_bad_skin = |skin: &Vec<(u32, f64)>| skin.iter().any(|(_, weight)| !weight.is_finite());
-    let by_vertex = [
-        ("color", mesh.vertex.colors.iter().position(|color| !color.is_finite())),
-        ("skin weight", mesh.vertex.skin.iter().position(is_bad_skin)),
-    ];
-    for (attribute, vertex) in by_vertex {
-        if let Some(vertex) = vertex {
-            return Err(ParseError::NonFinite { attribute, element: "vertex", number: vertex });
-        }
-    }
-    Ok(())
-}
-
-fn check_corners(corner: &CornerAttributes) -> Result<(), ParseError> {
-    fn first_bad<T>(corners: &[[T; 3]], is_finite: impl Fn(&T) -> bool) -> Option<usize> {
-        corners.iter().position(|corners| !corners.iter().all(&is_finite))
-    }
-    let by_triangle = [
-        ("texture coordinate", corner.uvs.iter().find_map(|set| first_bad(set, |uv| uv.is_finite()))),
-        ("normal", first_bad(&corner.normals, |normal| normal.is_finite())),
-        ("color", first_bad(&corner.colors, |color| color.is_finite())),
-    ];
-    for (attribute, triangle) in by_triangle {
-        if let Some(triangle) = triangle {
-            return Err(ParseError::NonFinite { attribute, element: "triangle", number: triangle });
-        }
-    }
-    Ok(())
-}
-
 /// Writes `mesh` to `path` in the format of its extension, completely or not at all: first to a
-/// temporary file in the same folder, which then replaces an existing file.
+/// temporary file in the same folder, which then replaces an existing file. A symbolic link stays,
+/// and the file that it points to is replaced.
 ///
 /// # Errors
 /// [`WriteError`], which names the file. An existing file is then unchanged.
@@ -172,7 +146,8 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
     let format = Format::of_path(path).ok_or_else(|| WriteError::UnknownFormat { path: path.to_owned() })?;
     check_writable(format, mesh, path)?;
     let failed = |source| WriteError::Io { path: path.to_owned(), source };
-    let folder = match path.parent() {
+    let target = follow_links(path).map_err(failed)?;
+    let folder = match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
@@ -189,7 +164,7 @@ pub fn write(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), WriteError> {
     if let Ok(replaced) = std::fs::metadata(path) {
         file.as_file().set_permissions(replaced.permissions()).map_err(failed)?;
     }
-    file.persist(path).map_err(|error| failed(error.error))?;
+    file.persist(&target).map_err(|error| failed(error.error))?;
     Ok(())
 }
 

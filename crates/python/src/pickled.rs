@@ -28,6 +28,8 @@ pub(crate) struct PickledMesh {
     /// Names of the mesh, the node and the scene.
     names: [String; 3],
     material_libraries: Vec<String>,
+    raw_names: std::collections::BTreeMap<String, Vec<u8>>,
+    notes: Vec<String>,
     /// JSON of a glTF document and the bytes that it refers to.
     gltf: Option<(String, Vec<u8>)>,
 }
@@ -56,6 +58,8 @@ impl PickledMesh {
             materials: mesh.materials.clone(),
             names: [name, node, scene],
             material_libraries: mesh.assets.material_libraries.clone(),
+            raw_names: mesh.assets.raw_names.clone(),
+            notes: mesh.assets.notes.clone(),
             gltf: gltf.map(|gltf| (gltf.json.clone(), gltf.bytes.clone())),
         }
     }
@@ -90,6 +94,8 @@ impl PickledMesh {
             assets: Assets {
                 names: Names { mesh: name, node, scene },
                 material_libraries: self.material_libraries,
+                raw_names: self.raw_names,
+                notes: self.notes,
                 gltf: self.gltf.map(gltf).transpose()?,
             },
         };

@@ -129,7 +129,12 @@ fn build_strokes(
     let builder = StrokeBuilder { tools: &tools, inner_tools: &inner_tools, step: recipe.integrate.step, bounds };
     let strokes = recipe.strokes.iter().enumerate();
     let strokes = strokes.map(|(index, stroke)| builder.build(index, stroke)).collect::<Result<_, _>>()?;
-    Ok((strokes, tool_builder.warnings))
+    Ok((strokes, notes(meshes).chain(tool_builder.warnings).collect()))
+}
+
+/// What the readers of the meshes left out or replaced.
+fn notes(meshes: &Meshes) -> impl Iterator<Item = String> {
+    meshes.iter().flat_map(|(name, mesh)| mesh.assets.notes.iter().map(move |note| format!("{name}: {note}")))
 }
 
 /// Refuses a promise about the volume of a target without one.

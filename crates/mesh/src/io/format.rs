@@ -51,6 +51,17 @@ impl Format {
         }
     }
 
+    /// The usual name of the format. Both forms of glTF have the same.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Obj => "OBJ",
+            Self::Gltf | Self::Glb => "glTF",
+            Self::Ply => "PLY",
+            Self::Stl => "STL",
+            Self::Off => "OFF",
+        }
+    }
+
     /// Whether writing rounds positions to single precision.
     pub fn is_single_precision(self) -> bool {
         matches!(self, Self::Gltf | Self::Glb | Self::Stl)

@@ -10,6 +10,8 @@ mod attributes;
 mod builder;
 mod carried;
 mod document;
+mod extensions;
+mod instancing;
 mod reader;
 mod scene;
 mod writer;

@@ -9,6 +9,7 @@ mod body;
 mod face;
 mod face_list;
 mod header;
+mod lines;
 mod plain_triangle;
 mod reader;
 mod vertex;

@@ -48,16 +48,6 @@ pub enum ParseError {
     /// The mesh that the file describes is invalid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// An attribute is infinite or NaN.
-    #[error("a {attribute} of {element} {number} is not finite")]
-    NonFinite {
-        /// The attribute.
-        attribute: &'static str,
-        /// The kind of element that has it: `"triangle"` or `"vertex"`.
-        element: &'static str,
-        /// Index of the element, counted from zero.
-        number: usize,
-    },
     /// A face of a format without lines names a vertex that does not exist.
     #[error("face {face} names vertex {index}, but the file has {vertices} vertices")]
     IndexOutOfRange {
@@ -98,9 +88,6 @@ pub enum LineProblem {
     /// A word is not the corner of a face.
     #[error("'{0}' is not a face corner (v, v/vt, v//vn or v/vt/vn)")]
     NotACorner(String),
-    /// A face has fewer than three corners.
-    #[error("a face needs at least three corners, {0} found")]
-    TooFewCorners(usize),
     /// The loop of an STL facet does not have three vertices.
     #[error("a facet needs exactly three vertices")]
     NotATriangle,

@@ -9,7 +9,7 @@ use std::io::{self, Cursor, Write};
 
 use glam::{DVec3, Vec3};
 
-use super::text::{FLUSH_AT, at_line, flush, numbered_lines, read_numbers};
+use super::text::{FLUSH_AT, Tokens, at_line, decode, flush, without_mark};
 use super::{LineProblem, ParseError};
 use crate::TriMesh;
 use crate::huge_pages::in_huge_pages;
@@ -24,20 +24,46 @@ const RECORD: usize = 50;
 /// Reads STL. Equal positions become one vertex. Coordinates of text files are read in double
 /// precision.
 pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
-    let count =
-        bytes.get(80..HEADER).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
-    let expected = count.map(|count| HEADER + RECORD * count);
     // The size decides first, because the free text of a binary file may begin with `solid` too.
-    match expected {
-        Some(expected) if expected == bytes.len() => parse_binary(bytes),
-        _ if bytes.trim_ascii_start().starts_with(b"solid") => parse_text(bytes),
-        Some(expected) if expected < bytes.len() => parse_binary(bytes),
-        Some(expected) => Err(ParseError::Malformed(format!(
-            "the file is truncated: {expected} bytes announced, {} found",
-            bytes.len()
-        ))),
-        None => Err(ParseError::Malformed("the file is truncated in its header".into())),
+    if has_exact_size(bytes) {
+        return parse_binary(bytes);
     }
+    match announced_size(bytes) {
+        Some(expected) if !is_text(bytes) && expected < bytes.len() => parse_binary(bytes),
+        _ if begins_with_solid(bytes) => parse_text(&decode(bytes)?),
+        Some(expected) => {
+            without_mark(bytes)?;
+            let found = bytes.len();
+            Err(ParseError::Malformed(format!("the file is truncated: {expected} bytes announced, {found} found")))
+        }
+        None => {
+            without_mark(bytes)?;
+            Err(ParseError::Malformed("the file is truncated in its header".into()))
+        }
+    }
+}
+
+/// Size that the header of a binary file announces.
+fn announced_size(bytes: &[u8]) -> Option<usize> {
+    let count = bytes.get(80..HEADER)?;
+    Some(HEADER + RECORD * u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize)
+}
+
+/// Whether the file has exactly the size that its header announces as a binary file.
+pub(super) fn has_exact_size(bytes: &[u8]) -> bool {
+    bytes.len() > HEADER && announced_size(bytes) == Some(bytes.len())
+}
+
+fn begins_with_solid(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
+    text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+}
+
+/// Whether the file begins with a solid and shows a word that only text files have.
+pub(super) fn is_text(bytes: &[u8]) -> bool {
+    let start = &bytes[..bytes.len().min(1 << 12)];
+    let has = |word: &[u8]| start.windows(word.len()).any(|bytes| bytes.eq_ignore_ascii_case(word));
+    begins_with_solid(bytes) && (has(b"facet") || has(b"endsolid"))
 }
 
 fn parse_binary(bytes: &[u8]) -> Result<TriMesh, ParseError> {
@@ -53,30 +79,68 @@ fn parse_binary(bytes: &[u8]) -> Result<TriMesh, ParseError> {
         let count = triangles.size_hint().0;
         welded(triangles.map(|triangle| triangle.map(corners)), count)
     });
-    mesh.map_err(|error| ParseError::Malformed(error.to_string()))
+    let mut mesh = mesh.map_err(|error| ParseError::Malformed(error.to_string()))?;
+    let announced = announced_size(&bytes).unwrap_or(HEADER).min(bytes.len());
+    let records = bytes[HEADER.min(announced)..announced].chunks_exact(RECORD);
+    let colored = records.filter(|record| record[RECORD - 2..] != [0, 0]).count();
+    if colored > 0 {
+        mesh.assets.notes.push(format!("the attribute bytes of triangles are not kept (nonzero in {colored})"));
+    }
+    Ok(mesh)
 }
 
-/// Reads the facets of all solids. All keywords except `vertex` and `endloop` are ignored.
+/// Reads the facets of all solids, whatever their case and line ends.
 fn parse_text(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     let mut positions = Vec::new();
-    let mut last_line = 0;
-    for (line, mut words) in numbered_lines(bytes) {
-        last_line = line;
-        match words.next().unwrap_or_default() {
-            b"vertex" => {
-                let (numbers, _) = read_numbers::<3>(words, 3).map_err(at_line(line))?;
+    let mut tokens = Tokens::of(bytes);
+    let mut place = Place::Outside;
+    while let Some(word) = tokens.next() {
+        let is = |keyword: &[u8]| word.eq_ignore_ascii_case(keyword);
+        match place {
+            // The name of a solid may contain any word, even `vertex`.
+            Place::Outside if is(b"solid") => place = Place::Name,
+            Place::Outside => {}
+            Place::Name if is(b"facet") => place = Place::Facet,
+            Place::Name | Place::Solid if is(b"endsolid") => place = Place::Outside,
+            Place::Solid if is(b"facet") => place = Place::Facet,
+            Place::Name | Place::Solid => {}
+            Place::Facet if is(b"vertex") => {
+                let numbers = tokens.numbers::<3>().map_err(|problem| at_line(tokens.line())(problem))?;
                 positions.push(DVec3::from_array(numbers));
             }
-            b"endloop" if !positions.len().is_multiple_of(3) => {
-                return Err(at_line(line)(LineProblem::NotATriangle));
+            Place::Facet if is(b"endloop") || is(b"endfacet") || is(b"endsolid") => {
+                if !positions.len().is_multiple_of(3) {
+                    return Err(at_line(tokens.line())(LineProblem::NotATriangle));
+                }
+                match () {
+                    () if is(b"endfacet") => place = Place::Solid,
+                    () if is(b"endsolid") => place = Place::Outside,
+                    () => {}
+                }
             }
-            _ => {}
+            Place::Facet => {}
         }
     }
-    match positions.as_chunks() {
-        (triangles, []) => welded(triangles.iter().copied().map(Ok), triangles.len()),
-        _ => Err(at_line(last_line)(LineProblem::NotATriangle)),
+    let end = match place {
+        Place::Outside => "",
+        Place::Facet => "it ends inside a facet",
+        Place::Name | Place::Solid => "it has no 'endsolid'",
+    };
+    if !end.is_empty() {
+        return Err(ParseError::Malformed(format!("the file is truncated: {end}")));
     }
+    let triangles = positions.as_chunks().0;
+    welded(triangles.iter().copied().map(Ok), triangles.len())
+}
+
+/// Where a word of a text file is.
+#[derive(Clone, Copy)]
+enum Place {
+    Outside,
+    /// After the keyword `solid`, before its first facet.
+    Name,
+    Solid,
+    Facet,
 }
 
 /// Merges equal positions into one vertex and drops triangles that thereby collapse.

@@ -1,5 +1,7 @@
 //! Reading and writing mesh files.
 
+mod awkward;
+mod awkward_gltf;
 mod gltf;
 mod obj;
 mod oracles;

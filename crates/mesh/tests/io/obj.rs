@@ -213,7 +213,7 @@ fn errors_name_the_line() {
     assert_eq!(error(&format!("{start}v 1 nan 0\n")), "line 5: 'nan' is not a finite number");
     assert_eq!(error(&format!("{start}v 1 1e999 0\n")), "line 5: '1e999' is not a finite number");
     assert_eq!(error("v 0 0\n"), "line 1: 3 numbers expected, 2 found");
-    assert_eq!(error(&format!("{start}f 1 2\n")), "line 5: a face needs at least three corners, 2 found");
+    assert_eq!(error(&format!("{start}f 1 2\n")), "the file has no triangles");
     assert_eq!(error(&format!("{start}f 1 2 x\n")), "line 5: 'x' is not a face corner (v, v/vt, v//vn or v/vt/vn)");
     // A vertex after a face with negative indices, and before a face with an index out of range.
     let late = format!("{start}f -3 -2 -1\nv 0 0 1\nf 1 2 5\n");

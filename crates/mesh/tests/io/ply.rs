@@ -53,7 +53,7 @@ fn errors_are_one_line() {
     let error = |body: &str| parse(Format::Ply, &format!("{header}{body}")).unwrap_err().to_string();
     assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "face 0 names vertex 3, but the file has 3 vertices");
     assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), "face 0 names vertex -1, but the file has 3 vertices");
-    assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), "face 0 has fewer than three corners");
+    assert_eq!(error("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), "the file has no triangles");
     // The library provides the reason.
     let refused = |body: &str, place: &str, problem: &str| {
         let message = error(body);

@@ -25,7 +25,7 @@ fn text_stl_may_hold_several_solids() {
     assert_eq!((mesh.positions.len(), mesh.triangles.len()), (3, 2));
     let broken = facet.replace("vertex 0 1 0", "vertex 0 1");
     let error = parse(Format::Stl, &format!("solid a\n{broken}endsolid a\n")).unwrap_err().to_string();
-    assert_eq!(error, "line 6: 3 numbers expected, 2 found");
+    assert_eq!(error, "line 7: 'endloop' is not a finite number");
     let short = facet.replace("  vertex 0 1 0\n", "");
     let error = parse(Format::Stl, &format!("solid a\n{short}endsolid a\n")).unwrap_err().to_string();
     assert_eq!(error, "line 6: a facet needs exactly three vertices");

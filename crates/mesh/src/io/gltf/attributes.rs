@@ -1,5 +1,7 @@
 //! Vertex attributes of glTF: the accessors of a primitive, and columns of values.
 
+use std::collections::BTreeMap;
+
 use ::gltf::json::mesh::{Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 
@@ -34,7 +36,8 @@ pub(super) struct Attributes {
     pub(super) positions: Option<usize>,
     pub(super) normals: Option<usize>,
     pub(super) colors: Option<usize>,
-    pub(super) uvs: Vec<usize>,
+    /// Texture coordinates, by the numbers of their sets.
+    pub(super) uvs: BTreeMap<u32, usize>,
     pub(super) joints: Vec<usize>,
     pub(super) weights: Vec<usize>,
 }
@@ -49,7 +52,7 @@ impl Attributes {
                 Checked::Valid(Semantic::Positions) => attributes.positions = Some(accessor),
                 Checked::Valid(Semantic::Normals) => attributes.normals = Some(accessor),
                 Checked::Valid(Semantic::Colors(0)) => attributes.colors = Some(accessor),
-                Checked::Valid(Semantic::TexCoords(_)) => attributes.uvs.push(accessor),
+                Checked::Valid(Semantic::TexCoords(set)) => _ = attributes.uvs.insert(*set, accessor),
                 Checked::Valid(Semantic::Joints(_)) => attributes.joints.push(accessor),
                 Checked::Valid(Semantic::Weights(_)) => attributes.weights.push(accessor),
                 _ => {}

@@ -6,17 +6,19 @@ use serde_json::{Value, json};
 
 use super::builder::DocumentBuilder;
 use super::document::{Document, load};
+use super::extensions::is_resolved;
 use crate::GltfAssets;
 use crate::io::{ParseError, Resolve};
 
 /// Top-level properties that are carried unchanged.
-const MATERIAL_PROPERTIES: [&str; 4] = ["materials", "textures", "samplers", "extensionsUsed"];
+const MATERIAL_PROPERTIES: [&str; 3] = ["materials", "textures", "samplers"];
 
 impl Document<'_> {
     /// Materials with everything that they refer to, and the skeleton if the mesh has a skin.
     pub(super) fn carried_assets(
         &self,
         skin: Option<usize>,
+        uv_sets: &[u32],
         resolve: Resolve<'_>,
     ) -> Result<Option<GltfAssets>, ParseError> {
         let mut assets = DocumentBuilder::default();
@@ -25,12 +27,20 @@ impl Document<'_> {
                 assets.properties.insert(name.into(), value.clone());
             }
         }
-        // Meshes are written without quantization, so readers need not support that extension.
-        if let Some(required) = self.json.get("extensionsRequired").and_then(Value::as_array) {
-            let kept: Vec<_> = required.iter().filter(|name| *name != "KHR_mesh_quantization").cloned().collect();
-            if !kept.is_empty() {
-                assets.properties.insert("extensionsRequired".into(), kept.into());
+        for name in ["extensionsUsed", "extensionsRequired"] {
+            if let Some(listed) = self.json.get(name).and_then(Value::as_array) {
+                let kept = listed.iter().filter(|name| name.as_str().is_some_and(|name| !is_resolved(name)));
+                let kept: Vec<_> = kept.cloned().collect();
+                if !kept.is_empty() {
+                    assets.properties.insert(name.into(), kept.into());
+                }
             }
+        }
+        // Sets are written without gaps in their numbers.
+        if let Some(materials) = assets.properties.get_mut("materials")
+            && uv_sets.iter().zip(0..).any(|(&set, number)| set != number)
+        {
+            renumber_uv_sets(materials, uv_sets);
         }
         if let Some(images) = self.json.get("images").and_then(Value::as_array) {
             let images = images.iter().map(|image| self.carry_image(image, &mut assets, resolve));
@@ -135,6 +145,28 @@ impl Document<'_> {
     fn carry_view(&self, index: u64, assets: &mut DocumentBuilder) -> Result<Value, ParseError> {
         let (bytes, stride) = self.view(index as usize)?;
         Ok(assets.push_view(bytes, stride))
+    }
+}
+
+/// Replaces the numbers of UV sets in materials by their positions in `sets`.
+fn renumber_uv_sets(part: &mut Value, sets: &[u32]) {
+    // A set that no mesh has keeps a number that no mesh has.
+    let new = |set: u64| match sets.iter().position(|&known| u64::from(known) == set) {
+        Some(position) => position as u64,
+        None => sets.len() as u64 + set,
+    };
+    match part {
+        Value::Array(parts) => parts.iter_mut().for_each(|part| renumber_uv_sets(part, sets)),
+        Value::Object(properties) => {
+            properties.values_mut().for_each(|part| renumber_uv_sets(part, sets));
+            let set = properties.get("texCoord").and_then(Value::as_u64);
+            // A reference to a texture without a set means set 0.
+            let set = set.or(properties.get("index").and_then(Value::as_u64).map(|_| 0));
+            if let Some(set) = set {
+                properties.insert("texCoord".into(), new(set).into());
+            }
+        }
+        _ => {}
     }
 }
 

@@ -10,6 +10,8 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use serde_json::Value;
 
+use super::extensions::{check_required, missing_buffer};
+use crate::io::text::without_mark;
 use crate::io::{ParseError, Resolve};
 
 /// A document with its loaded buffers.
@@ -20,9 +22,6 @@ pub(super) struct Document<'a> {
     pub(super) root: Root,
     buffers: Vec<Cow<'a, [u8]>>,
 }
-
-/// Extensions that store geometry in compressed form instead of accessors.
-const COMPRESSIONS: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// Top-level properties that geometry does not depend on. They are removed before the typed parse,
 /// so that unknown extensions in them do not cause the mesh to be refused.
@@ -39,12 +38,7 @@ impl<'a> Document<'a> {
                 malformed(format!("the JSON is broken: {error}"))
             }
         })?;
-        let required = json.get("extensionsRequired").and_then(Value::as_array);
-        for extension in required.into_iter().flatten().filter_map(Value::as_str) {
-            if COMPRESSIONS.contains(&extension) {
-                return Err(malformed(format!("compression by {extension} is not supported; save without it")));
-            }
-        }
+        check_required(&json)?;
         let mut geometry = json.clone();
         if let Some(properties) = geometry.as_object_mut() {
             OPAQUE.iter().for_each(|&name| _ = properties.remove(name));
@@ -56,7 +50,7 @@ impl<'a> Document<'a> {
         for (number, buffer) in root.buffers.iter().enumerate() {
             let bytes = match &buffer.uri {
                 Some(uri) => load(uri, resolve)?.into(),
-                None => binary.take().ok_or_else(|| malformed(format!("buffer {number} has no data")))?,
+                None => binary.take().ok_or_else(|| missing_buffer(&json, number))?,
             };
             if (bytes.len() as u64) < buffer.byte_length.0 {
                 let (announced, found) = (buffer.byte_length.0, bytes.len());
@@ -90,7 +84,7 @@ type Parts<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
 
 fn split(bytes: &[u8]) -> Result<Parts<'_>, ParseError> {
     if !bytes.starts_with(b"glTF") {
-        return Ok((bytes.into(), None));
+        return Ok((without_mark(bytes)?.into(), None));
     }
     let length = bytes.get(8..12).map(|length| u32::from_le_bytes([length[0], length[1], length[2], length[3]]));
     match length {

@@ -1,5 +1,6 @@
 //! Reading glTF.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use ::gltf::json::mesh::{Mode, Primitive};
@@ -28,9 +29,10 @@ pub(in crate::io) fn parse(bytes: &[u8], resolve: Resolve<'_>) -> Result<(TriMes
     // Check the vertices, which are fewer than the corners. Normals computed from triangles must be
     // checked at the corners.
     let has_finite_corners = soup.has_finite_attributes() && !soup.lacks_normals();
+    let uv_sets: Vec<u32> = soup.uvs.keys().copied().collect();
     let mut mesh = soup.into_mesh(&document.json).welded();
     mesh.assets.names = document.names(&instances);
-    mesh.assets.gltf = document.carried_assets(skin, resolve)?.map(Arc::new);
+    mesh.assets.gltf = document.carried_assets(skin, &uv_sets, resolve)?.map(Arc::new);
     Ok((mesh, has_finite_corners))
 }
 
@@ -46,7 +48,8 @@ struct Soup {
     positions: Vec<DVec3>,
     /// Zero for vertices without a normal in the file.
     normals: Column<Vec3>,
-    uvs: Vec<Column<Vec2>>,
+    /// By the numbers of their sets.
+    uvs: BTreeMap<u32, Column<Vec2>>,
     colors: Column<DVec4>,
     influences: Column<Vec<(u32, f64)>>,
     triangles: Vec<[u32; 3]>,
@@ -65,13 +68,14 @@ impl Soup {
         let mesh = mesh.ok_or_else(|| malformed(format!("mesh {number} does not exist")))?;
         // Primitives of several materials often share their vertices.
         let mut added: Vec<(Attributes, usize)> = Vec::new();
-        for primitive in &mesh.primitives {
+        for (index, primitive) in mesh.primitives.iter().enumerate() {
             let mode = match primitive.mode {
                 Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
                 Checked::Valid(_) => continue,
                 Checked::Invalid => return Err(malformed(format!("mesh {number} has a primitive of unknown mode"))),
             };
             let attributes = Attributes::of(primitive);
+            document.refuse_compressed(number, index, &attributes)?;
             let base = match added.iter().find(|(known, _)| *known == attributes) {
                 Some(&(_, base)) => base,
                 None => {
@@ -135,13 +139,10 @@ impl Soup {
             expect(normals.len())?;
             self.normals.add(base, normals, Vec3::ZERO);
         }
-        for (set, &accessor) in attributes.uvs.iter().enumerate() {
+        for (&set, &accessor) in &attributes.uvs {
             let uvs = document.vectors(accessor, |uv| DVec2::from_array(uv).as_vec2())?;
             expect(uvs.len())?;
-            if self.uvs.len() <= set {
-                self.uvs.push(Column::default());
-            }
-            self.uvs[set].add(base, uvs, Vec2::ZERO);
+            self.uvs.entry(set).or_default().add(base, uvs, Vec2::ZERO);
         }
         if let Some(accessor) = attributes.colors {
             let colors: Vec<DVec4> = match document.components(accessor)? {
@@ -206,7 +207,7 @@ impl Soup {
 
     fn has_finite_attributes(&self) -> bool {
         self.normals.0.iter().all(|normal| normal.is_finite())
-            && self.uvs.iter().all(|set| set.0.iter().all(|uv| uv.is_finite()))
+            && self.uvs.values().all(|set| set.0.iter().all(|uv| uv.is_finite()))
             && self.colors.0.iter().all(|color| color.is_finite())
     }
 
@@ -226,7 +227,7 @@ impl Soup {
         } else {
             by_corner(&triangles, &normals)
         };
-        let sets = self.uvs.into_iter();
+        let sets = self.uvs.into_values();
         let uvs = sets.map(|set| by_corner(&triangles, &set.complete(count, Vec2::ZERO))).collect();
         let materials = self.materials.complete(triangles.len(), None);
         let (materials, triangle_materials) = name_materials(json, &materials);

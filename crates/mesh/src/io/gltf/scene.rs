@@ -38,7 +38,10 @@ impl Document<'_> {
             if let Some(mesh) = node.mesh {
                 let skin = node.skin.map(|skin| skin.value());
                 let world_from_mesh = if skin.is_some() { DMat4::IDENTITY } else { world_from_node };
-                instances.push(Instance { mesh: mesh.value(), node: Some(number), skin, world_from_mesh });
+                for node_from_copy in self.copies(number)? {
+                    let world_from_mesh = world_from_mesh * node_from_copy;
+                    instances.push(Instance { mesh: mesh.value(), node: Some(number), skin, world_from_mesh });
+                }
             }
             let children = node.children.iter().flatten().rev();
             waiting.extend(children.map(|child| (child.value(), world_from_node)));

@@ -1,7 +1,7 @@
 //! Finding the faulty line of an OBJ file.
 
 use super::statement::Statements;
-use crate::io::text::{Words, at_line, parse_integer, read_numbers, text};
+use crate::io::text::{Words, at_line, parse_integer, read_numbers, read_values, text};
 use crate::io::{LineProblem, ParseError};
 
 /// The elements that the three indices of a corner refer to.
@@ -32,15 +32,16 @@ fn check_statement(statement: &[u8], counts: &mut [usize; 3], totals: [usize; 3]
     let kind = match words.next().unwrap_or_default() {
         b"v" => {
             // Seven numbers are a position with color and alpha.
-            read_numbers::<7>(words, 3)?;
+            read_numbers::<3>(words.clone(), 3)?;
+            read_values::<7>(words, 3)?;
             0
         }
         b"vt" => {
-            read_numbers::<2>(words, 1)?;
+            read_values::<2>(words, 1)?;
             1
         }
         b"vn" => {
-            read_numbers::<3>(words, 3)?;
+            read_values::<3>(words, 3)?;
             2
         }
         b"f" => return check_face(words, *counts, totals),
@@ -50,14 +51,9 @@ fn check_statement(statement: &[u8], counts: &mut [usize; 3], totals: [usize; 3]
     Ok(())
 }
 
-/// Refuses a face with fewer than three corners or with an invalid index.
-pub(super) fn check_face(words: Words<'_>, counts: [usize; 3], totals: [usize; 3]) -> Result<(), LineProblem> {
-    let mut corners = 0;
-    for word in words {
-        check_corner(word, counts, totals)?;
-        corners += 1;
-    }
-    if corners < 3 { Err(LineProblem::TooFewCorners(corners)) } else { Ok(()) }
+/// Refuses a face with an invalid index.
+pub(super) fn check_face(mut words: Words<'_>, counts: [usize; 3], totals: [usize; 3]) -> Result<(), LineProblem> {
+    words.try_for_each(|word| check_corner(word, counts, totals))
 }
 
 fn check_corner(word: &[u8], counts: [usize; 3], totals: [usize; 3]) -> Result<(), LineProblem> {

@@ -1,5 +1,6 @@
 //! The lines of an OBJ file as passed to the library.
 
+use std::collections::BTreeMap;
 use std::io::{self, BufRead, Read};
 
 use glam::DVec4;
@@ -8,7 +9,8 @@ use rustc_hash::FxHashMap;
 use super::fault::check_face;
 use super::statement::{Statement, Statements};
 use crate::io::LineProblem;
-use crate::io::text::{Words, parse_integer, read_numbers, text};
+use crate::io::element::{Dropped, distinct_corners, has_repeated_corner};
+use crate::io::text::{Words, is_non_finite, parse_integer, read_values};
 
 /// Bytes that are prepared at a time.
 const BUFFER: usize = 1 << 15;
@@ -25,6 +27,8 @@ pub(super) struct Lines<'a> {
     consumed: usize,
     object_size: usize,
     faces_of_object: usize,
+    /// Whether numbers of `vt` and `vn` that the library cannot parse are replaced by `nan`.
+    is_tolerant: bool,
     pub(super) kept: Kept,
 }
 
@@ -42,11 +46,15 @@ pub(super) struct Kept {
     /// Names of the materials. Faces without a material have the empty one.
     pub(super) materials: Vec<String>,
     pub(super) libraries: Vec<String>,
+    pub(super) names: RawNames,
+    pub(super) dropped: Dropped,
     /// Whether some face names an attribute at some of its corners only. The library does not check
     /// those indices.
     pub(super) has_uneven_faces: bool,
     material: u32,
-    material_numbers: FxHashMap<String, u32>,
+    material_numbers: FxHashMap<Vec<u8>, u32>,
+    /// Buffer for the corners of a face that remain.
+    distinct: Vec<usize>,
 }
 
 /// Material and attributes of a face.
@@ -60,10 +68,10 @@ pub(super) struct FaceKind {
 
 impl<'a> Lines<'a> {
     /// The lines of a file, with a new object after every `object_size` faces.
-    pub(super) fn new(bytes: &'a [u8], object_size: usize) -> Self {
+    pub(super) fn new(bytes: &'a [u8], object_size: usize, is_tolerant: bool) -> Self {
         let statements = Statements::of(bytes);
         let buffer = Vec::with_capacity(2 * BUFFER);
-        Self { statements, buffer, consumed: 0, object_size, faces_of_object: 0, kept: Kept::default() }
+        Self { statements, buffer, consumed: 0, object_size, faces_of_object: 0, is_tolerant, kept: Kept::default() }
     }
 
     fn push(&mut self, statement: &Statement<'_>) -> Result<(), LineProblem> {
@@ -75,23 +83,31 @@ impl<'a> Lines<'a> {
                 self.kept.counts[1] += 1;
                 // The library requires two numbers, while the format requires only one. It ignores
                 // a third.
-                self.push_line(&plain, b" 0\n");
+                self.push_attribute(&plain, b" 0\n");
             }
             b"vn" => {
                 self.kept.counts[2] += 1;
-                self.push_line(&plain, b"\n");
+                self.push_attribute(&plain, b"\n");
             }
             b"f" => {
-                self.kept.push_face(words)?;
+                let corners = words.clone();
+                let Some(is_whole) = self.kept.push_face(words)? else { return Ok(()) };
                 if self.faces_of_object == self.object_size {
                     self.faces_of_object = 0;
                     self.buffer.extend_from_slice(b"o\n");
                 }
                 self.faces_of_object += 1;
-                self.push_line(&plain, b"\n");
+                if is_whole {
+                    self.push_line(&plain, b"\n");
+                } else {
+                    self.push_distinct_corners(corners);
+                }
             }
-            b"usemtl" => self.kept.use_material(&name(statement)),
-            b"mtllib" => self.kept.libraries.push(name(statement)),
+            b"usemtl" => self.kept.use_material(name(statement)),
+            b"mtllib" => {
+                let library = self.kept.names.show(name(statement));
+                self.kept.libraries.push(library);
+            }
             _ => {}
         }
         Ok(())
@@ -103,6 +119,28 @@ impl<'a> Lines<'a> {
         self.kept.push_color(color)?;
         self.kept.counts[0] += 1;
         Ok(())
+    }
+
+    fn push_attribute(&mut self, statement: &[u8], end: &[u8]) {
+        if !self.is_tolerant {
+            return self.push_line(statement, end);
+        }
+        for word in (Words { rest: statement }) {
+            self.buffer.extend_from_slice(if is_non_finite(word) { b"nan" } else { word });
+            self.buffer.push(b' ');
+        }
+        self.buffer.extend_from_slice(end);
+    }
+
+    /// Adds a face without its repeated corners.
+    fn push_distinct_corners(&mut self, corners: Words<'_>) {
+        let corners: Vec<&[u8]> = corners.collect();
+        self.buffer.push(b'f');
+        for &corner in &self.kept.distinct {
+            self.buffer.push(b' ');
+            self.buffer.extend_from_slice(corners[corner]);
+        }
+        self.buffer.push(b'\n');
     }
 
     fn push_line(&mut self, statement: &[u8], end: &[u8]) {
@@ -142,16 +180,18 @@ impl Kept {
     /// Adds the color after a position, with or without alpha. A single number is a weight and
     /// ignored.
     fn push_color(&mut self, words: &[u8]) -> Result<(), LineProblem> {
-        if let ([r, g, b, alpha], found @ 3..) = read_numbers(Words { rest: words }, 0)? {
+        if let ([r, g, b, alpha], found @ 3..) = read_values(Words { rest: words }, 0)? {
             self.colors.resize(self.counts[0], DVec4::ONE);
             self.colors.push(DVec4::new(r, g, b, if found == 4 { alpha } else { 1.0 }));
         }
         Ok(())
     }
 
-    fn push_face(&mut self, words: Words<'_>) -> Result<(), LineProblem> {
+    /// Adds a face. Returns whether the face is as in the file or without repeated corners, or
+    /// `None` if it is left out.
+    fn push_face(&mut self, words: Words<'_>) -> Result<Option<bool>, LineProblem> {
         if self.materials.is_empty() {
-            self.use_material("");
+            self.use_material(b"");
         }
         let start = self.corners.len();
         let [vertices, uvs, normals] = match read_usual_corners(words.rest, &mut self.corners) {
@@ -161,6 +201,20 @@ impl Kept {
                 read_corners(words, self.counts, &mut self.corners)?
             }
         };
+        let face = &self.corners[start..];
+        let is_whole = !has_repeated_corner(face);
+        if !is_whole {
+            if !distinct_corners(face, &mut self.distinct) {
+                self.dropped.faces += 1;
+                self.corners.truncate(start);
+                return Ok(None);
+            }
+            self.dropped.corners += 1;
+            for (at, &corner) in self.distinct.iter().enumerate() {
+                self.corners[start + at] = self.corners[start + corner];
+            }
+            self.corners.truncate(start + self.distinct.len());
+        }
         let [has_uvs, has_normals] = [uvs, normals].map(|found| found == vertices);
         self.has_uneven_faces |= (!has_uvs && uvs > 0) || (!has_normals && normals > 0);
         let kind = FaceKind { material: self.material, has_uvs, has_normals };
@@ -168,16 +222,17 @@ impl Kept {
             Some((known, faces)) if *known == kind => *faces += 1,
             _ => self.runs.push((kind, 1)),
         }
-        Ok(())
+        Ok(Some(is_whole))
     }
 
-    fn use_material(&mut self, name: &str) {
+    fn use_material(&mut self, name: &[u8]) {
         self.material = match self.material_numbers.get(name) {
             Some(&number) => number,
             None => {
                 let number = self.materials.len() as u32;
                 self.material_numbers.insert(name.to_owned(), number);
-                self.materials.push(name.to_owned());
+                let shown = self.names.show(name);
+                self.materials.push(shown);
                 number
             }
         };
@@ -249,9 +304,26 @@ pub(super) fn split_vertex(statement: &[u8]) -> Result<(&[u8], &[u8]), LineProbl
     }
 }
 
-/// The text after the first word. Names may contain a `#`.
-fn name(statement: &Statement<'_>) -> String {
+/// The bytes after the first word. Names may contain a `#`.
+fn name<'a>(statement: &Statement<'a>) -> &'a [u8] {
     let mut words = Words { rest: statement.verbatim() };
     words.next();
-    text(words.rest)
+    words.rest.trim_ascii()
+}
+
+/// Names that are not UTF-8, by the text that is shown for them.
+#[derive(Default)]
+pub(super) struct RawNames(pub(super) BTreeMap<String, Vec<u8>>);
+
+impl RawNames {
+    /// The text for a name. A name that is not UTF-8 is shown as Latin-1, so that different names
+    /// stay different.
+    fn show(&mut self, name: &[u8]) -> String {
+        if let Ok(text) = str::from_utf8(name) {
+            return text.to_owned();
+        }
+        let shown: String = name.iter().map(|&byte| char::from(byte)).collect();
+        self.0.insert(shown.clone(), name.to_owned());
+        shown
+    }
 }

@@ -12,8 +12,9 @@ use super::statement::Statements;
 use crate::TriMesh;
 use crate::huge_pages::in_huge_pages;
 use crate::io::ParseError;
+use crate::io::element::{Dropped, is_triangle};
 use crate::io::polygon::triangulate;
-use crate::io::text::push_index;
+use crate::io::text::{decode, push_index};
 use crate::measure::triangle_normal;
 
 /// Faces per object for the library. Its tables for much larger objects exceed the cache; with much
@@ -26,10 +27,18 @@ const OBJECT_SIZE: usize = 1 << 13;
 /// Faces may refer to later vertices. Vertices keep their order, used or not, except that vertices
 /// split along seams are welded.
 pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
+    let text = decode(bytes)?;
+    let bytes = &text[..];
     // References to later elements can be resolved only if the whole file is read as one object.
-    let read = read_objects(bytes, OBJECT_SIZE).or_else(|_| read_objects(bytes, usize::MAX));
-    match read {
-        Ok(mesh) => Ok(mesh.welded_at_boundary()),
+    let read = read_objects(bytes, OBJECT_SIZE, false);
+    let read = read.or_else(|_| read_objects(bytes, usize::MAX, false));
+    // Only then are the numbers looked at one by one, which takes longer.
+    match read.or_else(|_| read_objects(bytes, usize::MAX, true)) {
+        Ok((mesh, dropped)) => {
+            let mut mesh = mesh.welded_at_boundary();
+            dropped.note(&mut mesh);
+            Ok(mesh)
+        }
         Err(problem) => {
             check_lines(bytes)?;
             Err(ParseError::Malformed(problem.to_string()))
@@ -37,8 +46,8 @@ pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, ParseError> {
     }
 }
 
-fn read_objects(bytes: &[u8], object_size: usize) -> Result<TriMesh, tobj::LoadError> {
-    let mut lines = Lines::new(bytes, object_size);
+fn read_objects(bytes: &[u8], object_size: usize, is_tolerant: bool) -> Result<(TriMesh, Dropped), tobj::LoadError> {
+    let mut lines = Lines::new(bytes, object_size, is_tolerant);
     let objects = load(&mut lines)?;
     let mut kept = lines.kept;
     if !kept.colors.is_empty() {
@@ -48,7 +57,9 @@ fn read_objects(bytes: &[u8], object_size: usize) -> Result<TriMesh, tobj::LoadE
     if !is_sound(&objects, &positions) || (kept.has_uneven_faces && check_lines(bytes).is_err()) {
         return Err(tobj::LoadError::GenericFailure);
     }
-    into_mesh(positions, &objects, kept).ok_or(tobj::LoadError::GenericFailure)
+    let dropped = kept.dropped;
+    let mesh = into_mesh(positions, &objects, kept).ok_or(tobj::LoadError::GenericFailure)?;
+    Ok((mesh, dropped))
 }
 
 fn load(lines: &mut impl BufRead) -> Result<Vec<tobj::Mesh>, tobj::LoadError> {
@@ -102,11 +113,8 @@ fn positions_of(vertices: &[u32], bytes: &[u8]) -> Result<Vec<DVec3>, tobj::Load
 
 /// Checks what the library accepts although the format forbids it.
 fn is_sound(objects: &[tobj::Mesh], positions: &[DVec3]) -> bool {
-    let is_finite =
-        |object: &tobj::Mesh| object.texcoords.iter().chain(&object.normals).all(|number| number.is_finite());
     let is_polygon = |object: &tobj::Mesh| object.face_arities.iter().all(|&arity| arity >= 3);
-    positions.iter().all(|position| position.is_finite())
-        && objects.iter().all(|object| is_finite(object) && is_polygon(object))
+    positions.iter().all(|position| position.is_finite()) && objects.iter().all(is_polygon)
 }
 
 /// Assembles the mesh. `None` if an object lacks attributes that its faces name, because they come
@@ -140,6 +148,9 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
             vertices = others;
             let mut push = |triangle: [usize; 3]| {
                 let vertices = triangle.map(|corner| corners[corner]);
+                if !is_triangle(&vertices) {
+                    return;
+                }
                 mesh.triangles.push(vertices);
                 if has_materials {
                     mesh.triangle_materials.push(kind.material);
@@ -174,6 +185,7 @@ fn into_mesh(positions: Vec<DVec3>, objects: &[tobj::Mesh], kept: Kept) -> Optio
     mesh.positions = positions;
     mesh.vertex.colors = kept.colors;
     mesh.assets.material_libraries = kept.libraries;
+    mesh.assets.raw_names = kept.names.0;
     Some(mesh)
 }
 

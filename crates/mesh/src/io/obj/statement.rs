@@ -19,14 +19,16 @@ impl<'a> Statement<'a> {
         if !self.is_marked {
             return Cow::Borrowed(self.bytes);
         }
-        let end = memchr::memchr(b'#', self.bytes).unwrap_or(self.bytes.len());
+        // Some programs print a number that is not finite as `1.#QNAN`.
+        let is_comment = |&at: &usize| !self.bytes[..at].ends_with(b"1.");
+        let end = memchr::memchr_iter(b'#', self.bytes).find(is_comment).unwrap_or(self.bytes.len());
         let joined = |&byte: &u8| if matches!(byte, b'\\' | b'\n') { b' ' } else { byte };
         Cow::Owned(self.bytes[..end].iter().map(joined).collect())
     }
 
     /// The first word.
     pub(super) fn keyword(&self) -> &'a [u8] {
-        Words { rest: self.bytes }.next().unwrap_or_default()
+        keyword(self.bytes)
     }
 
     /// The whole statement, for names that may contain a `#`.
@@ -35,7 +37,23 @@ impl<'a> Statement<'a> {
     }
 }
 
-/// The statements of a file. A backslash at the end joins lines.
+/// The first word, which a backslash at the end of the line may follow directly.
+fn keyword(statement: &[u8]) -> &[u8] {
+    let word = Words { rest: statement }.next().unwrap_or_default();
+    word.strip_suffix(b"\\").unwrap_or(word)
+}
+
+/// Whether a backslash at the end joins `line` to the next one. Names and comments may end in a
+/// backslash by chance, for example as the second byte of a character in Shift-JIS.
+fn continues(line: &[u8]) -> bool {
+    const JOINED: [&[u8]; 22] = [
+        b"v", b"vt", b"vn", b"vp", b"f", b"fo", b"p", b"l", b"deg", b"bmat", b"step", b"cstype", b"curv", b"curv2",
+        b"surf", b"parm", b"trim", b"hole", b"scrv", b"sp", b"con", b"end",
+    ];
+    line.last() == Some(&b'\\') && JOINED.contains(&keyword(line)) && memchr::memchr(b'#', line).is_none()
+}
+
+/// The statements of a file. A backslash at the end joins lines of numbers.
 pub(super) struct Statements<'a> {
     bytes: &'a [u8],
     start: usize,
@@ -60,7 +78,7 @@ impl<'a> Iterator for Statements<'a> {
             end = memchr::memchr(b'\n', &self.bytes[end..]).map_or(self.bytes.len(), |offset| end + offset + 1);
             let bytes = self.bytes[self.start..end].trim_ascii();
             let is_marked = self.mark < end;
-            if !is_marked || bytes.last() != Some(&b'\\') || end == self.bytes.len() {
+            if !is_marked || !continues(bytes) || end == self.bytes.len() {
                 if is_marked {
                     self.mark = next_mark(self.bytes, end);
                 }

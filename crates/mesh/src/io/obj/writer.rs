@@ -15,7 +15,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
     let mut out = LineWriter::new(writer);
     for library in &mesh.assets.material_libraries {
         out.push_text("mtllib ");
-        out.push_text(library);
+        push_name(&mut out, mesh, library);
         out.end_line()?;
     }
     for (vertex, position) in mesh.positions.iter().enumerate() {
@@ -43,7 +43,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
             // previous material.
             if triangle > 0 || !name.is_empty() {
                 out.push_text("usemtl ");
-                out.push_text(if name.is_empty() { "none" } else { name });
+                push_name(&mut out, mesh, if name.is_empty() { "none" } else { name });
                 out.end_line()?;
             }
         }
@@ -65,6 +65,11 @@ pub(in crate::io) fn write(mesh: &TriMesh, writer: &mut dyn Write) -> io::Result
         out.end_line()?;
     }
     out.finish()
+}
+
+/// Appends a name in the bytes of the file that it comes from.
+fn push_name(out: &mut LineWriter<'_>, mesh: &TriMesh, name: &str) {
+    out.push_bytes(mesh.assets.raw_names.get(name).map_or(name.as_bytes(), Vec::as_slice));
 }
 
 /// Writes each distinct value once, in the order of first use, and returns the indices of the

@@ -12,6 +12,7 @@ use super::vertex::Vertices;
 use crate::huge_pages::in_huge_pages;
 use crate::io::ParseError;
 use crate::io::by_corner::by_corner;
+use crate::io::element::{Dropped, distinct_corners, has_repeated_corner, is_triangle};
 use crate::io::polygon::triangulate;
 
 /// The triangles read so far.
@@ -26,6 +27,8 @@ pub(super) struct Triangles {
     corners: Vec<u32>,
     polygon: Vec<DVec3>,
     split: Vec<[usize; 3]>,
+    kept: Vec<usize>,
+    pub(super) dropped: Dropped,
 }
 
 impl Triangles {
@@ -47,13 +50,61 @@ impl Triangles {
                 triangles.push(number, &face, vertices)?;
             }
         }
+        triangles.complete(vertices);
+        Ok(triangles)
+    }
+
+    /// Adds the triangles of strips, which an index of −1 separates.
+    pub(super) fn read_strips(
+        &mut self,
+        body: &mut Body<'_>,
+        element: &ElementDef,
+        vertices: &Vertices,
+    ) -> Result<(), ParseError> {
+        body.read(element, |number, strip: Face| {
+            let count = vertices.positions.len();
+            let signed: Vec<i64> = strip.indices_of_file().collect();
+            for strip in signed.split(|&index| index == -1) {
+                if let Some(&index) = strip.iter().find(|&&index| index < 0 || index >= count as i64) {
+                    return Err(ParseError::IndexOutOfRange { face: number, index, vertices: count });
+                }
+                for (at, corners) in strip.array_windows::<3>().enumerate() {
+                    let [a, b, c] = corners.map(|index| index as u32);
+                    let triangle = if at % 2 == 0 { [a, b, c] } else { [b, a, c] };
+                    // Strips are joined by triangles that use a vertex twice.
+                    self.vertices.extend(Some(triangle).filter(is_triangle));
+                }
+            }
+            Ok(())
+        })?;
+        let of_vertex = |vertex: u32| vertices.colors.get(vertex as usize).copied().unwrap_or(DVec4::ONE);
+        if !self.colors.is_empty() {
+            let missing = self.vertices[self.colors.len()..].iter();
+            self.colors.extend(missing.map(|triangle| triangle.map(of_vertex)));
+        }
+        if !self.uvs.is_empty() {
+            let missing = self.vertices[self.uvs.len()..].iter();
+            let of_vertex = |vertex: u32| vertices.uvs.get(vertex as usize).copied().unwrap_or_default();
+            self.uvs.extend(missing.map(|triangle| triangle.map(of_vertex)));
+        }
+        if !self.normals.is_empty() {
+            let missing = self.vertices[self.normals.len()..].iter();
+            let of_vertex = |vertex: u32| vertices.normals.get(vertex as usize).copied().unwrap_or_default();
+            self.normals.extend(missing.map(|triangle| triangle.map(of_vertex)));
+        }
+        self.complete(vertices);
+        Ok(())
+    }
+
+    /// Takes attributes from the vertices that no face has as lists.
+    fn complete(&mut self, vertices: &Vertices) {
+        let triangles = self;
         if triangles.uvs.is_empty() {
             triangles.uvs = by_corner(&triangles.vertices, &vertices.uvs);
         }
         if triangles.normals.is_empty() {
             triangles.normals = by_corner(&triangles.vertices, &vertices.normals);
         }
-        Ok(triangles)
     }
 
     /// Adds the faces of a part if all are triangles. Otherwise leaves them unread and returns
@@ -81,17 +132,26 @@ impl Triangles {
     fn push(&mut self, number: usize, face: &Face, vertices: &Vertices) -> Result<(), ParseError> {
         self.corners.clear();
         self.polygon.clear();
-        for index in face.indices.iter().map(|&i| i64::from(i)).chain(face.unsigned.iter().map(|&i| i64::from(i))) {
+        for index in face.indices_of_file() {
             let position = usize::try_from(index).ok().and_then(|index| vertices.positions.get(index));
             let out_of_range = ParseError::IndexOutOfRange { face: number, index, vertices: vertices.positions.len() };
             self.polygon.push(*position.ok_or(out_of_range)?);
             self.corners.push(index as u32);
         }
-        if self.corners.len() < 3 {
-            return Err(ParseError::Malformed(format!("face {number} has fewer than three corners")));
-        }
+        let corners = self.corners.len();
         self.split.clear();
-        triangulate(&self.polygon, |triangle| self.split.push(triangle));
+        if has_repeated_corner(&self.corners) {
+            if !distinct_corners(&self.corners, &mut self.kept) {
+                self.dropped.faces += 1;
+                return Ok(());
+            }
+            self.dropped.corners += 1;
+            let polygon: Vec<DVec3> = self.kept.iter().map(|&corner| self.polygon[corner]).collect();
+            triangulate(&polygon, |triangle| self.split.push(triangle.map(|corner| self.kept[corner])));
+        } else {
+            triangulate(&self.polygon, |triangle| self.split.push(triangle));
+        }
+        self.split.retain(|triangle| is_triangle(&triangle.map(|corner| self.corners[corner])));
         self.vertices.extend(self.split.iter().map(|triangle| triangle.map(|corner| self.corners[corner])));
 
         let uv = |list: &[f64]| <[f64; 2]>::try_from(list).ok().map(|uv| DVec2::from_array(uv).as_vec2());
@@ -102,7 +162,7 @@ impl Triangles {
             _ => None,
         };
         let Self { vertices: all, split, .. } = self;
-        let polygon = Polygon { triangles: all, split, corners: self.corners.len() };
+        let polygon = Polygon { triangles: all, split, corners };
         let of_vertex = |vertex| vertices.uvs.get(vertex).copied().unwrap_or_default();
         add_list(&mut self.uvs, &polygon, &face.uvs, uv, of_vertex);
         let of_vertex = |vertex| vertices.normals.get(vertex).copied().unwrap_or_default();
@@ -160,6 +220,11 @@ struct Face {
 }
 
 impl Face {
+    /// The vertices, of whichever type.
+    fn indices_of_file(&self) -> impl Iterator<Item = i64> {
+        self.indices.iter().map(|&index| i64::from(index)).chain(self.unsigned.iter().map(|&index| i64::from(index)))
+    }
+
     fn set_indices<T: Into<i32>>(&mut self, name: &str, list: Vec<T>) -> PropertyAccessResult {
         if !is_indices(name) {
             return PropertyAccessResult::Ignored;

@@ -6,7 +6,7 @@ use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{DefaultElement, ElementDef, Header, PropertyType, ScalarType};
 
 use crate::io::ParseError;
-use crate::io::text::text;
+use crate::io::text::{decode, text};
 
 /// Largest number of characters of a line that an error shows.
 const SHOWN: usize = 80;
@@ -17,7 +17,8 @@ const SHOWN: usize = 80;
 /// [`ParseError::Malformed`], which names the line.
 pub(in crate::io) fn parse_header(bytes: &[u8]) -> Result<(Header, usize, usize), ParseError> {
     let (mut length, mut lines) = (0, 0);
-    for line in bytes.split_inclusive(|&byte| byte == b'\n') {
+    while length < bytes.len() {
+        let line = &bytes[length..length + line_length(&bytes[length..])];
         length += line.len();
         lines += 1;
         if line.trim_ascii() == b"end_header" {
@@ -28,7 +29,8 @@ pub(in crate::io) fn parse_header(bytes: &[u8]) -> Result<(Header, usize, usize)
         }
     }
     // Comments may have any encoding, but the library requires UTF-8.
-    let shown = String::from_utf8_lossy(&bytes[..length]);
+    let head = decode(&bytes[..length])?;
+    let shown = String::from_utf8_lossy(&head);
     let header = Parser::<DefaultElement>::new().read_header(&mut Reader::new(shown.as_bytes()));
     match header {
         Ok(header) => Ok((header, length, lines)),
@@ -39,6 +41,15 @@ pub(in crate::io) fn parse_header(bytes: &[u8]) -> Result<(Header, usize, usize)
             Some(line) => malformed(bytes, line),
             None => ParseError::Malformed(error.to_string().lines().collect::<Vec<_>>().join(" ")),
         }),
+    }
+}
+
+/// Length of the first line with its end: LF, CR LF or CR.
+fn line_length(bytes: &[u8]) -> usize {
+    match memchr::memchr2(b'\n', b'\r', bytes) {
+        Some(end) if bytes[end..].starts_with(b"\r\n") => end + 2,
+        Some(end) => end + 1,
+        None => bytes.len(),
     }
 }
 

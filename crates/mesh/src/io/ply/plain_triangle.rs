@@ -40,10 +40,12 @@ impl PlainTriangle {
         (lists == 1).then_some(plain)
     }
 
-    /// The vertices, or `None` if the face is not a triangle or an index is not below `vertices`.
+    /// The vertices, or `None` if the face is not a triangle of three vertices or an index is not below `vertices`.
     pub(super) fn corners(&self, vertices: usize) -> Option<[u32; 3]> {
         let is_vertex = |&corner: &i64| corner >= 0 && (corner as u64) < vertices as u64;
-        (self.length == 3 && self.corners.iter().all(is_vertex)).then(|| self.corners.map(|corner| corner as u32))
+        let [a, b, c] = self.corners;
+        let is_plain = self.length == 3 && a != b && b != c && c != a && self.corners.iter().all(is_vertex);
+        is_plain.then(|| self.corners.map(|corner| corner as u32))
     }
 
     fn set(&mut self, name: &str, value: impl Into<i64>) -> PropertyAccessResult {
