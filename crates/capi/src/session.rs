@@ -122,6 +122,9 @@ pub unsafe extern "C" fn isochore_session_begin_stroke(
             if options.longest_edge != 0.0 {
                 refinement.longest = Some(options.longest_edge);
             }
+            if options.deviation != 0.0 {
+                refinement.deviation = Some(options.deviation);
+            }
             if options.max_triangles != 0 {
                 refinement.max_triangles = options.max_triangles;
             }

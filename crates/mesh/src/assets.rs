@@ -13,7 +13,7 @@ pub struct Assets {
     /// Bytes of material and library names that an OBJ file does not encode in UTF-8, by the names
     /// shown for them. Writing OBJ restores the bytes.
     pub raw_names: BTreeMap<String, Vec<u8>>,
-    /// What the reader left out or replaced, one sentence each, for warnings.
+    /// Parts of the file that the reader left out or replaced, one sentence each, for warnings.
     pub notes: Vec<String>,
     /// Materials, textures, images, samplers, skin and skeleton of a glTF file.
     pub gltf: Option<Arc<GltfAssets>>,

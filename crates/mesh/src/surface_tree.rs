@@ -1,6 +1,7 @@
 //! A bounding volume hierarchy over the triangles of a surface that moves and is edited. An update
 //! recomputes only the boxes on the paths from changed triangles to the root.
 
+mod overlap;
 mod query;
 #[cfg(test)]
 mod tests;

@@ -383,13 +383,17 @@ class Session:
         *,
         refine: bool = True,
         longest_edge: float | None = None,
+        deviation: float | None = None,
         max_triangles: int | None = None,
         keep: Sequence[tuple[ArrayLike, float]] = ...,
     ) -> None:
         """Begins a stroke. The first pose only places the tool; later ones move it.
 
-        refine: whether edges in reach of the tool are split, collapsed and flipped.
+        refine: whether edges in reach of the tool are split, and crossings of the surface with
+            itself are prevented.
         longest_edge: edges longer than this are split, model units.
+        deviation: edges are split where the curved surface deviates from them by more than this,
+            model units.
         max_triangles: splits stop at this number of triangles.
         keep: balls, given by center (3,) and radius, in which triangles are not refined.
 
@@ -413,10 +417,11 @@ class Session:
         time: time of the host in seconds, not less than that of the previous move. It affects only
             the receipt.
 
-        Returns `moved_vertices`, `inserted_vertices`, `removed_vertices`, `flipped_edges`,
+        Returns `moved_vertices`, `inserted_vertices`,
         `is_limited` (whether `max_triangles` prevented splits), `refused_splits` (edges that remain
-        too long because the stroke has distorted the surface too much for a split to help) and
-        `seconds`.
+        too long or too coarse because the stroke has distorted the surface too much for a split to
+        help), `is_stopped` (whether the stroke has been ended because the surface would cross
+        itself farther on; later moves of the stroke have no effect) and `seconds`.
 
         Raises Error if no stroke is in progress, and ValueError if a number is not finite or the
         axis is zero.
@@ -427,13 +432,24 @@ class Session:
 
         The receipt has the counts of all moves and these keys:
 
+        removed_vertices, flipped_edges: number of vertices that collapses removed, and of edges that
+            were flipped, at the end of the stroke.
         volume: signed volume changes by "flow", "splits" and "remeshing", and a bound on their
             "rounding" error, cubic model units; None if the surface is open.
         lock_max_shift: largest displacement by the volume lock, model units, or None if the lock
             was skipped.
         lock_skipped: None if the lock was applied. Otherwise "off" (disabled), "needs_closed" (the
-            surface is open) or "no_hold" (the moved vertices cannot change the volume, and the lock
-            of the next stroke corrects the remaining error).
+            surface is open), "no_hold" (the moved vertices cannot change the volume) or "crossings"
+            (sheets of the surface are so close that the lock would make them cross). In the last
+            two cases the lock of the next stroke corrects the remaining error.
+        stopped_at: fraction of the stroke, from 0 to 1, at which it was ended because the surface
+            would have crossed itself, or None. The log contains the shortened stroke. A stroke that
+            was ended at 0 leaves no trace.
+        sheets: the two sheets that would have crossed, when the stroke was ended: their distance
+            "gap" and the point "at" midway between them, model units; or None.
+        crossings: number of pairs of triangles that the stroke made cross. 0 unless this stroke, or
+            an earlier one, had refine=False.
+        certificate_seconds: wall time of finding and removing crossings.
 
         Raises Error if no stroke is in progress.
         """

@@ -85,19 +85,22 @@ impl Session {
         Ok(Self { session: Mutex::new(session), views: Arc::default() })
     }
 
-    #[pyo3(signature = (tool, *, refine = true, longest_edge = None, max_triangles = None, keep = Vec::new()))]
+    #[expect(clippy::too_many_arguments, reason = "they are keyword arguments in Python")]
+    #[pyo3(signature = (tool, *, refine = true, longest_edge = None, deviation = None, max_triangles = None, keep = Vec::new()))]
     fn begin_stroke(
         &self,
         py: Python<'_>,
         tool: &Bound<'_, Tool>,
         refine: bool,
         longest_edge: Option<f64>,
+        deviation: Option<f64>,
         max_triangles: Option<usize>,
         keep: Vec<([f64; 3], f64)>,
     ) -> Result<(), Failure> {
         let default = InteractiveRefinement::default();
         let refinement = InteractiveRefinement {
             longest: longest_edge,
+            deviation,
             max_triangles: max_triangles.unwrap_or(default.max_triangles),
             keep: keep.into_iter().map(|(center, radius)| (center.into(), radius)).collect(),
             ..default

@@ -132,7 +132,7 @@ fn build_strokes(
     Ok((strokes, notes(meshes).chain(tool_builder.warnings).collect()))
 }
 
-/// What the readers of the meshes left out or replaced.
+/// Parts of the meshes that the readers left out or replaced.
 fn notes(meshes: &Meshes) -> impl Iterator<Item = String> {
     meshes.iter().flat_map(|(name, mesh)| mesh.assets.notes.iter().map(move |note| format!("{name}: {note}")))
 }

@@ -46,18 +46,20 @@
 //! ```
 
 mod advection;
+mod base_points;
 mod buffers;
+mod certificate;
 mod editing;
 mod error;
 mod export;
 mod history;
-mod inserted;
 mod locking;
 mod log;
 mod marks;
 mod opening;
 mod options;
 mod origin;
+mod path;
 mod query;
 mod receipt;
 mod refinement;
@@ -74,6 +76,8 @@ use std::sync::Arc;
 
 use isochore_field as field;
 use isochore_mesh::{Aabb, ClosedMesh, CompensatedSum, NONE, TriMesh};
+
+pub use isochore_field::Sheets;
 
 pub use buffers::{Changes, DirtyRange, RenderBuffers};
 pub use error::{HostToolError, OpenError, SessionError};

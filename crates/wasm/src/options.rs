@@ -49,10 +49,12 @@ export interface SessionOptions {
 
 /** Options of a stroke. */
 export interface StrokeOptions {
-  /** Whether edges in reach of the tool are split, collapsed and flipped. Default: true. */
+  /** Whether edges in reach of the tool are split, some are collapsed or flipped at the end of the stroke, and crossings of the surface with itself are prevented. Default: true. */
   refine?: boolean;
   /** Edges longer than this are split, model units. */
   longestEdge?: number;
+  /** Edges are split where the curved surface deviates from them by more than this, model units. */
+  deviation?: number;
   /** Splits stop at this number of triangles. */
   maxTriangles?: number;
   /** Balls in which triangles are not refined: x, y, z and radius of each, model units. */
@@ -112,6 +114,8 @@ unsafe extern "C" {
     pub fn refine(this: &StrokeOptions) -> Option<bool>;
     #[wasm_bindgen(method, getter, js_name = longestEdge)]
     pub fn longest_edge(this: &StrokeOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    pub fn deviation(this: &StrokeOptions) -> Option<f64>;
     #[wasm_bindgen(method, getter, js_name = maxTriangles)]
     pub fn max_triangles(this: &StrokeOptions) -> Option<f64>;
     #[wasm_bindgen(method, getter)]

@@ -78,7 +78,7 @@ impl Session {
     /// is in progress.
     #[wasm_bindgen(js_name = beginStroke)]
     pub fn begin_stroke(&mut self, tool: &Tool, options: Option<StrokeOptions>) -> Result<(), JsError> {
-        let options = self::options(options, &["refine", "longestEdge", "maxTriangles", "keep"])?;
+        let options = self::options(options, &["refine", "longestEdge", "deviation", "maxTriangles", "keep"])?;
         let default = InteractiveRefinement::default();
         let balls = options.keep().unwrap_or_default();
         let (balls, rest) = balls.as_chunks::<4>();
@@ -87,6 +87,7 @@ impl Session {
         }
         let refinement = InteractiveRefinement {
             longest: options.longest_edge(),
+            deviation: options.deviation(),
             max_triangles: count("maxTriangles", options.max_triangles(), default.max_triangles)?,
             keep: balls.iter().map(|&[x, y, z, radius]| ([x, y, z].into(), radius)).collect(),
             ..default

@@ -38,7 +38,9 @@ pub struct SessionOptions {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct StrokeOptions {
-    /// Disables refinement. Otherwise edges in reach of the tool are split, collapsed and flipped.
+    /// Disables refinement. Otherwise edges in reach of the tool are split, some of them are
+    /// collapsed or flipped at the end of the stroke, and crossings of the surface with itself are
+    /// prevented.
     pub keep_triangles: bool,
     /// Edges longer than this are split, model units.
     pub longest_edge: f64,
@@ -48,6 +50,8 @@ pub struct StrokeOptions {
     pub keep: *const f64,
     /// Number of balls.
     pub keep_count: usize,
+    /// Edges are split where the curved surface deviates from them by more than this, model units.
+    pub deviation: f64,
 }
 /// Combines the weights and the JSON of the options into one mask.
 ///

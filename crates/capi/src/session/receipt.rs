@@ -10,15 +10,14 @@ pub struct MoveReceipt {
     pub moved_vertices: usize,
     /// Number of vertices that splits inserted.
     pub inserted_vertices: usize,
-    /// Number of vertices that collapses removed.
-    pub removed_vertices: usize,
-    /// Number of flipped edges.
-    pub flipped_edges: usize,
     /// Whether the limit on triangles prevented splits.
     pub is_limited: bool,
-    /// Number of edges that remain too long because the stroke has distorted the surface too much
-    /// for a split to help.
+    /// Number of edges that remain too long or too coarse because the stroke has distorted the
+    /// surface too much for a split to help.
     pub refused_splits: usize,
+    /// Whether the stroke has been ended, because the surface would cross itself farther on. Later
+    /// moves of the stroke have no effect.
+    pub is_stopped: bool,
 }
 
 impl From<session::MoveReceipt> for MoveReceipt {
@@ -26,10 +25,9 @@ impl From<session::MoveReceipt> for MoveReceipt {
         Self {
             moved_vertices: done.moved_vertices,
             inserted_vertices: done.inserted_vertices,
-            removed_vertices: done.removed_vertices,
-            flipped_edges: done.flipped_edges,
             is_limited: done.is_limited,
             refused_splits: done.refused_splits,
+            is_stopped: done.is_stopped,
         }
     }
 }
@@ -48,6 +46,9 @@ pub enum LockSkipped {
     /// The vertices that moved cannot change the volume. The lock of the next stroke corrects the
     /// remaining error.
     NoHold = 3,
+    /// Sheets of the surface are so close that the lock would make them cross. The lock of the next
+    /// stroke corrects the remaining error.
+    Crossings = 4,
 }
 
 impl From<Option<session::LockSkipped>> for LockSkipped {
@@ -57,6 +58,7 @@ impl From<Option<session::LockSkipped>> for LockSkipped {
             Some(session::LockSkipped::Off) => Self::Off,
             Some(session::LockSkipped::NeedsClosed) => Self::NeedsClosed,
             Some(session::LockSkipped::NoHold) => Self::NoHold,
+            Some(session::LockSkipped::Crossings) => Self::Crossings,
         }
     }
 }
@@ -71,14 +73,14 @@ pub struct StrokeReceipt {
     pub touched_vertices: usize,
     /// Number of vertices that splits inserted.
     pub inserted_vertices: usize,
-    /// Number of vertices that collapses removed.
+    /// Number of vertices that collapses removed at the end of the stroke.
     pub removed_vertices: usize,
-    /// Number of flipped edges.
+    /// Number of edges that were flipped at the end of the stroke.
     pub flipped_edges: usize,
     /// Whether the limit on triangles prevented splits.
     pub is_limited: bool,
-    /// Largest number of edges in any move that remained too long because the stroke has distorted
-    /// the surface too much for a split to help.
+    /// Largest number of edges in any move that remained too long or too coarse because the stroke
+    /// has distorted the surface too much for a split to help.
     pub refused_splits: usize,
     /// Whether the surface is closed. If not, the volume changes below are 0.
     pub has_volume: bool,
@@ -94,6 +96,22 @@ pub struct StrokeReceipt {
     pub lock_max_shift: f64,
     /// Reason why the volume lock was skipped.
     pub lock_skipped: LockSkipped,
+    /// Whether the stroke was ended before its last pose, because the surface would have crossed
+    /// itself. The log contains the shortened stroke; a stroke that was ended at 0 leaves no trace.
+    pub is_stopped: bool,
+    /// Fraction of the stroke at which it ended; 1 if it was not ended early.
+    pub stopped_at: f64,
+    /// Whether the two sheets that would have crossed are known.
+    pub has_sheets: bool,
+    /// Distance between these sheets when the stroke ended, model units.
+    pub sheets_gap: f64,
+    /// The point midway between these sheets, model units.
+    pub sheets_at: [f64; 3],
+    /// Number of pairs of triangles that the stroke made cross. Zero unless this stroke, or an
+    /// earlier one, kept all triangles.
+    pub crossings: usize,
+    /// Wall time of finding and removing crossings, seconds.
+    pub certificate_seconds: f64,
     /// Memory that undo holds for this stroke, in bytes.
     pub undo_bytes: usize,
     /// Number of older strokes that were removed from the history to stay within the memory budget.
@@ -118,6 +136,13 @@ impl From<session::StrokeReceipt> for StrokeReceipt {
             volume_rounding: volume.rounding,
             lock_max_shift: done.lock_max_shift.unwrap_or(0.0),
             lock_skipped: done.lock_skipped.into(),
+            is_stopped: done.stopped_at.is_some(),
+            stopped_at: done.stopped_at.unwrap_or(1.0),
+            has_sheets: done.sheets.is_some(),
+            sheets_gap: done.sheets.map_or(0.0, |sheets| sheets.gap),
+            sheets_at: done.sheets.map_or([0.0; 3], |sheets| sheets.at.to_array()),
+            crossings: done.crossings,
+            certificate_seconds: done.certificate_seconds,
             undo_bytes: done.undo_bytes,
             forgotten_strokes: done.forgotten_strokes,
         }

@@ -69,7 +69,24 @@ pub(crate) fn lock_with_weights(
 /// # Panics
 /// If an index is out of range, or `rest` is not as long as `image`.
 pub fn lock_part(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], gain: f64, size: f64) -> Option<Lock> {
-    let directions = directions(rest, image, triangles)?;
+    lock_part_weighted(rest, image, triangles, &vec![1.0; image.len()], gain, size)
+}
+
+/// Like [`lock_part`], with the displacement of each vertex multiplied by a weight. A vertex of weight
+/// zero stays.
+///
+/// # Panics
+/// If an index is out of range, or `rest` or `weights` is not as long as `image`.
+pub fn lock_part_weighted(
+    rest: &[DVec3],
+    image: &mut [DVec3],
+    triangles: &[[u32; 3]],
+    weights: &[f64],
+    gain: f64,
+    size: f64,
+) -> Option<Lock> {
+    let mut directions = directions(rest, image, triangles)?;
+    directions.iter_mut().zip(weights).for_each(|(direction, &weight)| *direction *= weight);
     let unlocked = image.to_vec();
     balance_part(image, &directions, triangles, gain, size)?;
     Some(Lock::between(&unlocked, image, triangles))

@@ -49,6 +49,15 @@ impl Slow<'_> {
         let hit = tree.cast_ray(point, direction, &corners).map(|hit| (hit.distance, hit.triangle));
         assert_eq!(hit, all.first().copied());
 
+        let all = || 0..self.1.len() as u32;
+        let some: Vec<u32> = all().filter(|triangle| triangle % 7 == 3).collect();
+        let near = tree.triangles_near(&some);
+        assert!(near.is_sorted());
+        for triangle in all().filter(|&triangle| self.1[triangle as usize]) {
+            let overlaps = |&other: &u32| self.bounds(other).overlaps(self.bounds(triangle));
+            assert!(near.binary_search(&triangle).is_ok() || !some.iter().any(overlaps), "triangle {triangle}");
+        }
+
         let bounds = Aabb { min: point - 0.3, max: point + 0.3 };
         let mut near = vec![false; self.1.len()];
         tree.visit_box(bounds, |triangle| near[triangle as usize] = true);

@@ -11,10 +11,9 @@ pub(super) fn move_receipt<'py>(py: Python<'py>, receipt: &MoveReceipt) -> PyRes
     let dict = PyDict::new(py);
     dict.set_item("moved_vertices", receipt.moved_vertices)?;
     dict.set_item("inserted_vertices", receipt.inserted_vertices)?;
-    dict.set_item("removed_vertices", receipt.removed_vertices)?;
-    dict.set_item("flipped_edges", receipt.flipped_edges)?;
     dict.set_item("is_limited", receipt.is_limited)?;
     dict.set_item("refused_splits", receipt.refused_splits)?;
+    dict.set_item("is_stopped", receipt.is_stopped)?;
     dict.set_item("seconds", receipt.seconds.total())?;
     Ok(dict)
 }
@@ -41,8 +40,18 @@ pub(super) fn stroke_receipt<'py>(py: Python<'py>, receipt: &StrokeReceipt) -> P
     dict.set_item("volume", volume.transpose()?)?;
     dict.set_item("lock_max_shift", receipt.lock_max_shift)?;
     dict.set_item("lock_skipped", receipt.lock_skipped.map(LockSkipped::name))?;
+    dict.set_item("stopped_at", receipt.stopped_at)?;
+    let sheets = receipt.sheets.map(|sheets| {
+        let dict = PyDict::new(py);
+        dict.set_item("gap", sheets.gap)?;
+        dict.set_item("at", sheets.at.to_array())?;
+        PyResult::Ok(dict)
+    });
+    dict.set_item("sheets", sheets.transpose()?)?;
+    dict.set_item("crossings", receipt.crossings)?;
     dict.set_item("undo_bytes", receipt.undo_bytes)?;
     dict.set_item("forgotten_strokes", receipt.forgotten_strokes)?;
+    dict.set_item("certificate_seconds", receipt.certificate_seconds)?;
     dict.set_item("seconds", receipt.seconds.total())?;
     Ok(dict)
 }

@@ -2,13 +2,15 @@
 //! update index and buffers.
 
 use glam::DVec3;
+use isochore_field::Mask;
 use rayon::prelude::*;
 use web_time::Instant;
 
 use super::{
-    MoveReceipt, MoveSeconds, Session, SessionError,
-    refinement::{Edits, Pass},
-    stroke::{ActiveStroke, Segment},
+    InteractiveRefinement, MoveReceipt, MoveSeconds, Session, SessionError,
+    path::Segment,
+    refinement::{Pass, Splits},
+    stroke::ActiveStroke,
     surface::Surface,
 };
 
@@ -52,15 +54,15 @@ impl Session {
         let surface = &mut self.surface;
         let refine = stroke.refine.clone();
         let mask = self.mask.as_deref();
-        let mut edits = Edits::default();
+        let mut splits = Splits::default();
         let mut seconds = MoveSeconds::default();
         let mut stopwatch = Stopwatch::start();
 
         let mut near = surface.triangles_near(&segment);
         seconds.select += stopwatch.lap();
         if let Some(options) = &refine {
-            edits += Pass::new(surface, stroke, mask, options).split_ahead(&near, &segment);
-            near.extend(&edits.triangles);
+            splits += stroke.pass(surface, mask, options).split_ahead(&near, &segment);
+            near.extend(&splits.triangles);
         }
         seconds.refine += stopwatch.lap();
 
@@ -72,21 +74,23 @@ impl Session {
         let evaluations = images.iter().map(|part| part.evaluations).sum::<u64>();
         let moved = surface.move_vertices(&images);
         if moved.is_ok() {
-            stroke.path.push(segment);
+            stroke.phase.path.segments.push(segment);
         }
         seconds.flow += stopwatch.lap();
 
         let moved_vertices = moved.as_deref().unwrap_or_default();
         let mut changed = surface.triangles_at(moved_vertices, &near);
-        stroke.note_moved(&changed, surface.corners.items().len());
         if let Some(options) = refine.as_ref().filter(|_| moved.is_ok()) {
-            edits += Pass::new(surface, stroke, mask, options).improve(&changed);
+            splits += stroke.pass(surface, mask, options).split_behind(&changed);
         }
-        if !edits.triangles.is_empty() {
-            let edited = [&edits.triangles[..], &changed].concat();
+        if !splits.triangles.is_empty() {
+            let edited = [&splits.triangles[..], &changed].concat();
             changed = surface.triangles_around(&[], &edited);
         }
         seconds.refine += stopwatch.lap();
+
+        stroke.phase.vertices.extend(moved_vertices, surface.positions.items().len());
+        stroke.note(surface, &changed, &splits);
 
         surface.update_tree(&changed);
         seconds.index += stopwatch.lap();
@@ -97,15 +101,13 @@ impl Session {
 
         let receipt = MoveReceipt {
             moved_vertices: moved_vertices.len(),
-            inserted_vertices: edits.split_volumes.len(),
-            removed_vertices: edits.removed_vertices,
-            flipped_edges: edits.flipped_edges,
-            is_limited: edits.is_limited,
-            refused_splits: edits.refused_splits,
-            evaluations: evaluations + edits.evaluations,
+            inserted_vertices: splits.volumes.len(),
+            is_limited: splits.is_limited,
+            refused_splits: splits.refused,
+            evaluations: evaluations + splits.evaluations,
+            is_stopped: false,
             seconds,
         };
-        stroke.note_edits(&edits);
         stroke.receipt.add(&receipt);
         moved.map(|_| receipt)
     }
@@ -139,12 +141,13 @@ impl Surface {
 }
 
 impl ActiveStroke {
-    /// Adds the volumes of edits.
-    pub(super) fn note_edits(&mut self, edits: &Edits) {
-        edits.split_volumes.iter().for_each(|&volume| self.splits.add(volume));
-        for volume in &edits.remeshing_volumes {
-            self.remeshing.add(*volume);
-            self.remeshed += volume.abs();
-        }
+    /// A pass of splits.
+    pub(super) fn pass<'a>(
+        &'a mut self,
+        surface: &'a mut Surface,
+        mask: Option<&'a Mask>,
+        options: &'a InteractiveRefinement,
+    ) -> Pass<'a> {
+        Pass::new(surface, &mut self.phase.midpoints, &self.phase.path, mask, options, &self.tool)
     }
 }

@@ -1,11 +1,17 @@
 //! The volume lock at the end of a stroke: a small displacement of the moved vertices, stored
 //! separately from the flow.
+//!
+//! The lock is under certificate: it makes no triangles cross that the host sees. Where it would,
+//! vertices are held, and the others move farther.
 
-use glam::DVec3;
-use isochore_field::lock_part;
-use isochore_mesh::CompensatedSum;
+mod part;
 
-use super::{LockSkipped, stroke::ActiveStroke, surface::Surface};
+use super::{LockSkipped, certificate::Pair, stroke::ActiveStroke, surface::Surface};
+use part::Part;
+
+/// Most rounds. Each holds more vertices around the crossings that the round before has found.
+/// Larger locks surfaces whose sheets nearly touch everywhere; smaller skips more locks.
+const MAX_ROUNDS: usize = 5;
 
 /// Result of the lock of a stroke.
 pub(super) struct Locked {
@@ -20,59 +26,34 @@ impl ActiveStroke {
     /// `size` again. `excess` is its deviation at the beginning of the stroke. Takes time
     /// proportional to the part that the stroke touched.
     pub(super) fn lock(&self, surface: &mut Surface, excess: f64, size: f64) -> Locked {
-        let touched: Vec<u32> = self.touched(surface).collect();
-        let change = self.shown_change(surface, &touched);
-        let alive: Vec<[u32; 3]> = touched
-            .iter()
-            .map(|&triangle| &surface.topology.triangles()[triangle as usize])
-            .filter(|triangle| triangle.is_alive())
-            .map(|triangle| triangle.vertices)
-            .collect();
-        let vertices = surface.vertices_of(&touched);
-        let number = |vertex: u32| vertices.partition_point(|&other| other < vertex) as u32;
-        let triangles: Vec<[u32; 3]> = alive.iter().map(|triangle| triangle.map(number)).collect();
-        let rest: Vec<DVec3> =
-            vertices.iter().map(|&vertex| surface.base(vertex) + surface.offsets.get(vertex)).collect();
-        // The same sum as in `rest`, so that the two are equal for a vertex that has not moved.
-        let flow = |&vertex: &u32| surface.position(vertex) + surface.offsets.get(vertex);
-        let mut image: Vec<DVec3> = vertices.iter().map(flow).collect();
-        let Some(lock) = lock_part(&rest, &mut image, &triangles, -(excess + change), size) else {
-            return Locked { max_shift: Err(LockSkipped::NoHold), shown_change: change };
-        };
-        for ((&vertex, rest), locked) in vertices.iter().zip(rest).zip(image) {
-            let position = surface.position(vertex);
-            if rest != position + surface.offsets.get(vertex) {
-                surface.offsets.set(vertex, locked - position);
+        let mut part = Part::new(surface, self.touched.items());
+        let known = self.known_crossings(surface);
+        let mut skipped = LockSkipped::NoHold;
+        for round in 0..MAX_ROUNDS {
+            part.reset(surface);
+            let Some(max_shift) = part.shift(surface, excess, size) else {
+                skipped = LockSkipped::NoHold;
+                break;
+            };
+            // A host that keeps all triangles wants exactly these, even if they cross.
+            let crossing = if self.refine.is_some() { part.crossings(surface, &known) } else { Vec::new() };
+            if crossing.is_empty() {
+                return Locked { max_shift: Ok(max_shift), shown_change: part.finish(surface) };
             }
+            part.hold(surface, &crossing, (1 << round) - 1);
+            skipped = LockSkipped::Crossings;
         }
-        surface.update_tree(&touched);
-        surface.write_buffers(&vertices, std::iter::empty());
-        Locked { max_shift: Ok(lock.max_shift), shown_change: self.shown_change(surface, &touched) }
+        part.reset(surface);
+        // Also for a host that keeps all triangles: offsets of earlier locks are no help to it.
+        part.release(surface, &known);
+        Locked { max_shift: Err(skipped), shown_change: part.finish(surface) }
     }
 
-    /// Change of the shown volume since the beginning of the stroke.
-    fn shown_change(&self, surface: &Surface, touched: &[u32]) -> f64 {
-        let journal = surface.topology.journal();
-        let before = |vertex: u32| {
-            let offset = surface.offsets.original(vertex).unwrap_or(DVec3::ZERO);
-            surface.base(vertex) + offset
-        };
-        // Any origin gives the same sum; a near one keeps rounding small.
-        let origin = touched.iter().find_map(|&triangle| surface.shown_corners(triangle));
-        let origin = origin.map_or(DVec3::ZERO, |corners| corners[0]);
-        let mut sum = CompensatedSum::default();
-        let mut add = |corners: [DVec3; 3], sign: f64| {
-            let [a, b, c] = corners.map(|corner| corner - origin);
-            sum.add(sign * a.dot(b.cross(c)) / 6.0);
-        };
-        for &triangle in touched {
-            if let Some(old) = journal.original(triangle).filter(|old| old.is_alive()) {
-                add(old.vertices.map(before), -1.0);
-            }
-            if let Some(corners) = surface.shown_corners(triangle) {
-                add(corners, 1.0);
-            }
+    /// Crossings that the lock does not cause.
+    fn known_crossings(&self, surface: &mut Surface) -> Vec<Pair> {
+        if !self.has_crossings {
+            return Vec::new();
         }
-        sum.value()
+        surface.new_crossings(self.touched.items(), Surface::position)
     }
 }

@@ -21,6 +21,8 @@ pub(super) struct LoggedStroke {
     pub(super) volume_change: Option<f64>,
     /// Change of the shown volume: what remains after the lock.
     pub(super) shown_change: f64,
+    /// Number of new crossings that it left.
+    pub(super) crossings: usize,
 }
 
 /// Errors of [`Session::replay`].

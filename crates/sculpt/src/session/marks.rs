@@ -66,6 +66,32 @@ impl Marks {
     }
 }
 
+/// Indices in the order in which they were added, each once.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Touched {
+    marks: Marks,
+    items: Vec<u32>,
+}
+
+impl Touched {
+    /// Removes all indices.
+    pub(super) fn clear(&mut self) {
+        self.marks.clear();
+        self.items.clear();
+    }
+
+    /// Adds `indices`, all of which are below `count`.
+    pub(super) fn extend(&mut self, indices: &[u32], count: usize) {
+        self.marks.resize(count);
+        self.items.extend(indices.iter().filter(|&&index| self.marks.insert(index)));
+    }
+
+    /// The indices.
+    pub(super) fn items(&self) -> &[u32] {
+        &self.items
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -90,7 +90,7 @@ impl Default for StrokeOptions {
     }
 }
 
-/// Rules by which a stroke splits, collapses and flips edges in the tool's reach.
+/// Rules by which a stroke splits edges in the tool's reach, and at its end collapses and flips some.
 ///
 /// A split places the new vertex exactly where the flow moves it. A collapse or a flip changes the
 /// volume slightly; the change is reported separately in
@@ -98,14 +98,18 @@ impl Default for StrokeOptions {
 /// materials and the boundary may be split, but are never collapsed or flipped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InteractiveRefinement {
-    /// Length above which edges are split, model units. By default an eighth of the tool's
-    /// [feature size](isochore_field::Tool::feature_size).
+    /// Length above which edges in the tool's reach are split, model units. By default half of the
+    /// tool's [feature size](isochore_field::Tool::feature_size).
     pub longest: Option<f64>,
-    /// Edges shorter than this fraction of `longest`, from 0 to 0.4, are collapsed if the stroke
-    /// has squeezed them to less than half their length. Zero collapses none. Vertices of the mesh
+    /// Distance of the image of an edge's midpoint from the straight edge above which the edge is
+    /// split, model units. By default a 256th of the tool's feature size. Edges of less than an
+    /// eighth of the feature size are not split for this reason.
+    pub deviation: Option<f64>,
+    /// Edges shorter than this fraction of `longest`, from 0 to 0.4, are collapsed at the end of the
+    /// stroke if it has squeezed them to less than half their length. Zero collapses none. Vertices of the mesh
     /// as opened may be removed too.
     pub collapse: f64,
-    /// Whether to flip edges between badly shaped triangles that the stroke has moved.
+    /// Whether to flip edges between badly shaped triangles at the end of the stroke.
     pub flip: bool,
     /// Maximum number of triangles; splits stop before they exceed it.
     pub max_triangles: usize,
@@ -115,6 +119,13 @@ pub struct InteractiveRefinement {
 
 impl Default for InteractiveRefinement {
     fn default() -> Self {
-        Self { longest: None, collapse: 0.0625, flip: true, max_triangles: 20_000_000, keep: Vec::new() }
+        Self {
+            longest: None,
+            deviation: None,
+            collapse: 0.0625,
+            flip: true,
+            max_triangles: 20_000_000,
+            keep: Vec::new(),
+        }
     }
 }

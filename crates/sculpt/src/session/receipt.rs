@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::Sheets;
+
 /// Result of one [`move_to`](super::Session::move_to).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MoveReceipt {
@@ -9,17 +11,16 @@ pub struct MoveReceipt {
     pub moved_vertices: usize,
     /// Vertices that splits inserted.
     pub inserted_vertices: usize,
-    /// Vertices that collapses removed.
-    pub removed_vertices: usize,
-    /// Edges that were flipped.
-    pub flipped_edges: usize,
     /// Whether the limit on triangles kept edges from being split.
     pub is_limited: bool,
-    /// Edges that stay too long because the stroke stirs the surface so much that splits do not
-    /// help.
+    /// Edges that remain too long or too coarse because the stroke has distorted the surface too
+    /// much for a split to help.
     pub refused_splits: usize,
     /// Evaluations of the field.
     pub evaluations: u64,
+    /// Whether the stroke has been ended, because the surface would cross itself farther on. This
+    /// and later moves of the stroke end at the same moment.
+    pub is_stopped: bool,
     /// Wall time by stage.
     pub seconds: MoveSeconds,
 }
@@ -31,18 +32,20 @@ pub struct MoveSeconds {
     pub select: f64,
     /// Advecting vertices along the flow.
     pub flow: f64,
-    /// Splits, collapses and flips.
+    /// Splits.
     pub refine: f64,
     /// Updating the index over the triangles.
     pub index: f64,
     /// Updating normals and the other buffers.
     pub buffers: f64,
+    /// Finding and removing crossings.
+    pub certificate: f64,
 }
 
 impl MoveSeconds {
     /// Sum of all stages.
     pub fn total(&self) -> f64 {
-        self.select + self.flow + self.refine + self.index + self.buffers
+        self.select + self.flow + self.refine + self.index + self.buffers + self.certificate
     }
 }
 
@@ -55,11 +58,11 @@ pub struct StrokeReceipt {
     pub duration: f64,
     /// Existing vertices that the stroke moved or removed.
     pub touched_vertices: usize,
-    /// Vertices that splits inserted, including those that were removed again.
+    /// Vertices that splits inserted, including those that were removed again at the end.
     pub inserted_vertices: usize,
-    /// Vertices that collapses removed.
+    /// Vertices that collapses removed at the end of the stroke.
     pub removed_vertices: usize,
-    /// Edges that were flipped.
+    /// Edges that were flipped at the end of the stroke.
     pub flipped_edges: usize,
     /// Whether the limit on triangles kept edges from being split.
     pub is_limited: bool,
@@ -74,8 +77,21 @@ pub struct StrokeReceipt {
     pub lock_max_shift: Option<f64>,
     /// Reason why the lock was skipped. `None` if it acted.
     pub lock_skipped: Option<LockSkipped>,
+    /// Fraction of the stroke, from 0 to 1, at which it was ended because the surface would have
+    /// crossed itself. `None` if the whole stroke was made. The log contains the shortened stroke. A
+    /// stroke that was ended at 0 leaves no trace.
+    pub stopped_at: Option<f64>,
+    /// The two sheets that would have crossed, at the moment when the stroke was ended. `None` if it
+    /// was not ended, or if the surface would have folded over.
+    pub sheets: Option<Sheets>,
+    /// Number of pairs of triangles that the stroke made cross and that did not cross in the mesh as
+    /// opened. Zero, unless this stroke, or an earlier one, kept all triangles.
+    pub crossings: usize,
     /// Wall time of all moves by stage.
     pub seconds: MoveSeconds,
+    /// Wall time of finding and removing crossings, during moves and at the end of the stroke,
+    /// seconds.
+    pub certificate_seconds: f64,
     /// Bytes that undo holds for this stroke, including those that redo will need.
     pub undo_bytes: usize,
     /// Number of oldest strokes that undo has forgotten to stay within its memory.
@@ -86,8 +102,6 @@ impl StrokeReceipt {
     /// Adds the result of a move, except the number of moves.
     pub(super) fn add(&mut self, receipt: &MoveReceipt) {
         self.inserted_vertices += receipt.inserted_vertices;
-        self.removed_vertices += receipt.removed_vertices;
-        self.flipped_edges += receipt.flipped_edges;
         self.is_limited |= receipt.is_limited;
         self.refused_splits = self.refused_splits.max(receipt.refused_splits);
         self.evaluations += receipt.evaluations;
@@ -96,6 +110,7 @@ impl StrokeReceipt {
         self.seconds.refine += receipt.seconds.refine;
         self.seconds.index += receipt.seconds.index;
         self.seconds.buffers += receipt.seconds.buffers;
+        self.seconds.certificate += receipt.seconds.certificate;
     }
 }
 
@@ -109,15 +124,19 @@ pub enum LockSkipped {
     /// The stroke has moved nothing that the volume depends on, or too little to restore the
     /// volume. The lock of the next stroke corrects the remaining difference.
     NoHold,
+    /// Sheets of the surface are so close everywhere that the lock would make them cross. The lock
+    /// of the next stroke corrects the remaining difference.
+    Crossings,
 }
 
 impl LockSkipped {
-    /// Identifier for programs: `off`, `needs_closed` or `no_hold`.
+    /// Identifier for programs: `off`, `needs_closed`, `no_hold` or `crossings`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Off => "off",
             Self::NeedsClosed => "needs_closed",
             Self::NoHold => "no_hold",
+            Self::Crossings => "crossings",
         }
     }
 }
@@ -128,6 +147,7 @@ impl fmt::Display for LockSkipped {
             Self::Off => "the lock was skipped: the session has no lock",
             Self::NeedsClosed => "the lock was skipped: the mesh is open and has no volume",
             Self::NoHold => "the lock was skipped: nothing moved that the volume depends on",
+            Self::Crossings => "the lock was skipped: it would make the surface cross itself",
         })
     }
 }

@@ -1,36 +1,75 @@
-//! Splits, collapses and flips during a stroke, restricted to the triangles that it touches.
+//! Refinement by a stroke, restricted to the triangles that it touches.
+//!
+//! During the stroke, edges are split. A split halves an edge of the base, the surface from which
+//! the flow starts, and so never bends the base. Collapses and flips would: they follow at the end
+//! of the stroke, where the image becomes the next base.
 
 mod collapses;
-mod edits;
 mod flips;
+mod midpoints;
 mod pass;
 mod splits;
 mod survey;
+mod tidying;
 
 use glam::DVec3;
 use isochore_mesh::Aabb;
 
-use super::{InteractiveRefinement, SessionError, SessionTool, stroke::Segment};
+use super::{InteractiveRefinement, SessionError, SessionTool, path::Segment};
 
-pub(super) use edits::Edits;
+pub(super) use midpoints::Midpoints;
 pub(super) use pass::Pass;
+pub(super) use splits::Splits;
+pub(super) use survey::distance_to_segment;
 
 use pass::is_held;
-use survey::{Limits, survey};
 
-/// Default length of the longest edges, as a fraction of the tool's feature size. Larger lets the
-/// field slip through between vertices, and the facet error grows with the square; smaller makes
-/// triangles that nobody sees.
-const LONGEST: f64 = 0.125;
+/// Default length of the longest edges in the tool's reach, as a fraction of the tool's feature
+/// size. Larger lets the field slip through between vertices; smaller makes triangles that flat
+/// surface does not need.
+const LONGEST: f64 = 0.5;
+
+/// Default of the largest deviation, as a fraction of the tool's feature size. Larger leaves visible
+/// facets on what the tool shapes; smaller makes triangles that nobody sees.
+const DEVIATION: f64 = 1.0 / 256.0;
+
+/// Edges up to this fraction of the tool's feature size, or up to the longest allowed length if that
+/// is less, are not split for their deviation. Larger cuts off sharp bends; smaller spends triangles
+/// on the thin films that a tool draws out.
+const FINEST: f64 = 0.125;
+
+/// Edges of the base that are shorter than this fraction of the shortest edge that is split are not
+/// split, however long their image is. Larger leaves long pulls coarse; smaller follows the flow
+/// farther where it stirs without end, as at the rim of a core that crosses the surface.
+const LEAST_IN_BASE: f64 = 1.0 / 32.0;
 
 /// Largest allowed `collapse`. Larger, and edges that a split leaves are collapsed again: half of
 /// an edge just too long is half as long as the longest.
 const MOST_COLLAPSE: f64 = 0.4;
 
+/// Thresholds, model units.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::session) struct Limits {
+    /// Longer edges in the tool's reach are split.
+    longest: f64,
+    /// Shorter edges are collapsed if the stroke has squeezed them.
+    shortest: f64,
+    /// Shorter edges are not examined for their deviation.
+    pub(in crate::session) finest: f64,
+    /// Largest distance of the image of a midpoint from the edge between the images of the ends.
+    deviation: f64,
+    /// Shorter edges of the base are not split.
+    least_in_base: f64,
+    max_triangles: usize,
+}
+
 impl InteractiveRefinement {
     pub(super) fn check(&self) -> Result<(), SessionError> {
         if self.longest.is_some_and(|longest| !(longest > 0.0 && longest.is_finite())) {
             return Err(SessionError::Refinement("the longest edge must be a positive, finite length"));
+        }
+        if self.deviation.is_some_and(|deviation| deviation.is_nan() || deviation <= 0.0) {
+            return Err(SessionError::Refinement("the deviation must be a positive length"));
         }
         if !(0.0..=MOST_COLLAPSE).contains(&self.collapse) {
             return Err(SessionError::Refinement("the collapse fraction must be from 0 to 0.4 of the longest edge"));
@@ -45,12 +84,15 @@ impl InteractiveRefinement {
     }
 
     fn limits(&self, tool: &SessionTool) -> Limits {
-        let longest = self.longest.unwrap_or(LONGEST * tool.tool().feature_size());
-        let shortest = self.collapse * longest;
+        let size = tool.tool().feature_size();
+        let longest = self.longest.unwrap_or(LONGEST * size);
+        let finest = longest.min(FINEST * size);
         Limits {
-            longest2: longest * longest,
-            shortest2: shortest * shortest,
-            flip: self.flip,
+            longest,
+            shortest: self.collapse * longest,
+            finest,
+            deviation: self.deviation.unwrap_or(DEVIATION * size),
+            least_in_base: LEAST_IN_BASE * finest,
             max_triangles: self.max_triangles,
         }
     }
@@ -66,33 +108,17 @@ impl InteractiveRefinement {
 impl Pass<'_> {
     /// Splits long edges before the tool moves along `segment`: edges of those of `triangles` that
     /// it may touch.
-    pub(super) fn split_ahead(&mut self, triangles: &[u32], segment: &Segment) -> Edits {
+    pub(super) fn split_ahead(&mut self, triangles: &[u32], segment: &Segment) -> Splits {
         let mask = self.mask;
         let is_held = |corners: [DVec3; 3]| (0..3).all(|side| is_held(mask, [corners[side], corners[(side + 1) % 3]]));
         let may_touch = |corners: [DVec3; 3]| segment.may_touch(Aabb::of(corners)) && !is_held(corners);
-        let only_long = Limits { shortest2: 0.0, flip: false, ..self.limits };
-        let surveyed = survey(self.surface, triangles, &only_long, Some(&may_touch));
-        self.split(surveyed.long, Some(&may_touch)).into()
+        self.limits.finest = self.limits.longest;
+        self.split(triangles.to_vec(), Some(&may_touch))
     }
 
-    /// Splits, collapses and flips edges of `triangles`, which have moved.
-    pub(super) fn improve(&mut self, triangles: &[u32]) -> Edits {
-        let surveyed = survey(self.surface, triangles, &self.limits, None);
-        let mut edits = Edits::default();
-        if self.limits.flip {
-            // Shear lengthens one edge of a pair of triangles and shortens the other. Flipping
-            // costs nothing; a split would insert a vertex that the flow does not need.
-            let long = surveyed.long.iter().map(|&(_, edge)| edge).collect();
-            edits += self.flip(long, flips::FOR_LENGTH).into();
-        }
-        edits += self.split(surveyed.long, None).into();
-        edits += self.collapse(surveyed.short).into();
-        if self.limits.flip {
-            let mut obtuse = surveyed.obtuse;
-            let only_obtuse = Limits { longest2: f64::INFINITY, shortest2: 0.0, ..self.limits };
-            obtuse.extend(survey(self.surface, &edits.triangles, &only_obtuse, None).obtuse);
-            edits += self.flip(obtuse, flips::FOR_SHAPE).into();
-        }
-        edits
+    /// Splits edges of `triangles`, which have moved: those that the flow has lengthened too much, and
+    /// those that deviate.
+    pub(super) fn split_behind(&mut self, triangles: &[u32]) -> Splits {
+        self.split(triangles.to_vec(), None)
     }
 }

@@ -9,7 +9,9 @@ use super::{
     history::Step,
     locking::Locked,
     log::{self, LoggedStroke},
-    stroke::{ActiveStroke, Segment},
+    path::Segment,
+    stroke::ActiveStroke,
+    surface::Surface,
 };
 use crate::recipe::Key;
 
@@ -57,14 +59,19 @@ impl Session {
     /// there.
     pub fn move_to_key(&mut self, key: &Key, time: f64) -> Result<MoveReceipt, SessionError> {
         let pose = key.pose()?;
-        let stroke = self.stroke.as_ref().ok_or(SessionError::NoStroke)?;
+        let stroke = self.stroke.as_mut().ok_or(SessionError::NoStroke)?;
         let last = stroke.times.last().copied().unwrap_or(f64::NEG_INFINITY);
         if !(time.is_finite() && time >= last) {
             return Err(SessionError::Time { time, last });
         }
+        if let Some(stopped) = &mut stroke.stopped {
+            stopped.asked += 1;
+            return Ok(MoveReceipt { is_stopped: true, ..MoveReceipt::default() });
+        }
         let mut receipt = MoveReceipt::default();
         if let Some(last) = stroke.pose {
-            let segment = self.segment(&stroke.tool, [last, pose])?;
+            let tool = Arc::clone(&stroke.tool);
+            let segment = self.segment(&tool, [last, pose])?;
             receipt = self.advect(segment)?;
         }
         if let Some(stroke) = &mut self.stroke {
@@ -73,6 +80,7 @@ impl Session {
             stroke.times.push(time);
             stroke.pose = Some(pose);
         }
+        self.rebase_if_due(&mut receipt);
         Ok(receipt)
     }
 
@@ -96,13 +104,25 @@ impl Session {
     /// # Errors
     /// [`SessionError::NoStroke`].
     pub fn end_stroke(&mut self) -> Result<StrokeReceipt, SessionError> {
-        let stroke = self.stroke.take().ok_or(SessionError::NoStroke)?;
+        let mut stroke = self.stroke.take().ok_or(SessionError::NoStroke)?;
+        self.certify(&mut stroke);
+        if stroke.keys.len() > 1 {
+            let touched = stroke.touched.items().to_vec();
+            self.tidy(&mut stroke, &touched);
+        }
+        if stroke.has_crossings {
+            let crossing = self.surface.new_crossings(stroke.touched.items(), Surface::position);
+            stroke.receipt.crossings = crossing.len();
+        }
         let mut receipt = stroke.receipt;
+        receipt.stopped_at = stroke.stopped_at();
+        receipt.sheets = stroke.stopped.and_then(|stopped| stopped.sheets);
         if let [first, .., last] = stroke.times[..] {
             receipt.duration = last - first;
         }
-        let inserted = &self.surface.inserted;
-        receipt.touched_vertices = self.surface.positions.edited().filter(|&vertex| !inserted.contains(vertex)).count();
+        let bases = &self.surface.bases;
+        receipt.touched_vertices =
+            self.surface.positions.edited().filter(|&vertex| bases.inserted_at(vertex).is_none()).count();
         receipt.volume = self.opened_volume.map(|_| stroke.volume(&self.surface));
         let locked = self.lock(&stroke);
         (receipt.lock_max_shift, receipt.lock_skipped) = (locked.max_shift.ok(), locked.max_shift.err());
@@ -112,8 +132,13 @@ impl Session {
             return Ok(receipt);
         }
         let volume_change = receipt.volume.map(|volume| volume.total());
-        let stroke =
-            LoggedStroke { tool: stroke.tool, keys: stroke.keys, volume_change, shown_change: locked.shown_change };
+        let stroke = LoggedStroke {
+            tool: stroke.tool,
+            keys: stroke.keys,
+            volume_change,
+            shown_change: locked.shown_change,
+            crossings: receipt.crossings,
+        };
         let step = Step { stroke, delta };
         receipt.undo_bytes = step.bytes();
         receipt.forgotten_strokes = self.steps.push(step, self.options.undo_bytes);

@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::{stroke::Segment, surface::Surface};
+use super::{path::Segment, surface::Surface};
 
 /// Elements that one task examines. Larger leaves threads idle; smaller spends time on scheduling.
 const CHUNK: usize = 4096;

@@ -1,19 +1,18 @@
-//! The stroke under way: its poses so far, the path of any point through it, and the sums for its
-//! receipt.
+//! The stroke under way: its poses so far and the sums for its receipt.
 
 use std::sync::Arc;
 
-use glam::DVec3;
 use isochore_field as field;
-use isochore_mesh::{Aabb, CompensatedSum};
-use rayon::prelude::*;
+use isochore_mesh::CompensatedSum;
 
-use super::{InteractiveRefinement, SessionTool, StrokeReceipt, marks::Marks};
+use super::{
+    InteractiveRefinement, MovedVolume, SessionTool, Sheets, StrokeReceipt,
+    marks::Touched,
+    path::Path,
+    refinement::{Midpoints, Splits},
+    surface::Surface,
+};
 use crate::recipe::Key;
-
-/// Points that one task advects through all moves of the stroke. Larger leaves threads idle;
-/// smaller spends time on scheduling.
-const CHUNK: usize = 128;
 
 /// A stroke that has begun and not ended.
 #[derive(Debug, Clone)]
@@ -25,13 +24,19 @@ pub(super) struct ActiveStroke {
     pub(super) times: Vec<f64>,
     /// The last pose.
     pub(super) pose: Option<field::Pose>,
-    /// Moves between consecutive poses.
-    pub(super) path: Vec<Segment>,
     /// Number of triangles at the beginning of the stroke.
     pub(super) alive: usize,
-    /// Triangles with a vertex that moved.
-    pub(super) moved: Vec<u32>,
-    pub(super) moved_marks: Marks,
+    /// Triangles that were moved or split.
+    pub(super) touched: Touched,
+    pub(super) phase: Phase,
+    /// Volume moved before the base was made.
+    pub(super) moved_before: MovedVolume,
+    /// The moment at which the stroke was ended. Later poses are ignored.
+    pub(super) stopped: Option<Stopped>,
+    /// Number of triangles that splits have added because of crossings.
+    pub(super) untangling: usize,
+    /// Whether new crossings remain.
+    pub(super) has_crossings: bool,
     /// Volume added by splits.
     pub(super) splits: CompensatedSum,
     /// Volume added by collapses and flips.
@@ -41,55 +46,28 @@ pub(super) struct ActiveStroke {
     pub(super) receipt: StrokeReceipt,
 }
 
-/// The move between two poses.
-#[derive(Debug, Clone)]
-pub(super) struct Segment {
-    pub(super) stroke: field::Stroke,
-    /// Box that contains the support during the move.
-    pub(super) reach: Aabb,
-    /// Boxes of a smaller half-diagonal are not tested one by one, model units.
-    finest: f64,
+/// The part of a stroke since the base was made.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Phase {
+    /// Moves between consecutive poses.
+    pub(super) path: Path,
+    pub(super) midpoints: Midpoints,
+    /// Triangles that were moved or split.
+    pub(super) triangles: Touched,
+    /// Vertices that were moved or inserted.
+    pub(super) vertices: Touched,
+    /// Number of inserted vertices.
+    pub(super) inserted: usize,
 }
 
-/// Half-diagonal of the smallest boxes of the index that are tested, as a fraction of the size of
-/// the reach. Larger selects points that the flow leaves at rest; smaller spends more time on tests
-/// than that takes.
-const FINEST: f64 = 1.0 / 64.0;
-
-/// Factor by which the ball around a box grows to contain the balls around all boxes inside. For a
-/// box of sides b in one of sides a, whose centers differ by (a − b)/2 at most, |a − b| + |b| ≤ √2
-/// |a|; the rest is for rounding.
-const NESTING: f64 = 1.415;
-
-impl Segment {
-    pub(super) fn new(stroke: field::Stroke) -> Self {
-        let reach = stroke.reach();
-        Self { reach, finest: FINEST * reach.size().max_element(), stroke }
-    }
-
-    /// Whether the support may touch anything in these bounds. False is certain.
-    pub(super) fn may_touch(&self, bounds: Aabb) -> bool {
-        self.reach.overlaps(bounds) && self.stroke.may_touch(bounds.center(), 0.5 * bounds.size().length())
-    }
-
-    /// Whether any box within these bounds may pass [`may_touch`](Self::may_touch). False is
-    /// certain.
-    pub(super) fn may_touch_within(&self, bounds: Aabb) -> bool {
-        let radius = 0.5 * NESTING * bounds.size().length();
-        self.reach.overlaps(bounds) && (radius < self.finest || self.stroke.may_touch(bounds.center(), radius))
-    }
-
-    /// Advects those of `points` that are in reach. Returns the number of field evaluations.
-    fn advect(&self, points: &mut [DVec3]) -> u64 {
-        let within: Vec<usize> = (0..points.len()).filter(|&index| self.reach.distance(points[index]) == 0.0).collect();
-        if within.is_empty() {
-            return 0;
-        }
-        let mut images: Vec<DVec3> = within.iter().map(|&index| points[index]).collect();
-        let evaluations = self.stroke.advect(&mut images);
-        within.into_iter().zip(images).for_each(|(index, image)| points[index] = image);
-        evaluations
-    }
+/// The end of a stroke before its last pose.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stopped {
+    /// Number of moves before the end, the last one in part.
+    pub(super) moves: f64,
+    /// Number of moves that the host has asked for.
+    pub(super) asked: usize,
+    pub(super) sheets: Option<Sheets>,
 }
 
 impl ActiveStroke {
@@ -100,10 +78,13 @@ impl ActiveStroke {
             keys: Vec::new(),
             times: Vec::new(),
             pose: None,
-            path: Vec::new(),
             alive,
-            moved: Vec::new(),
-            moved_marks: Marks::default(),
+            touched: Touched::default(),
+            phase: Phase::default(),
+            moved_before: MovedVolume::default(),
+            stopped: None,
+            untangling: 0,
+            has_crossings: false,
             splits: CompensatedSum::default(),
             remeshing: CompensatedSum::default(),
             remeshed: 0.0,
@@ -111,16 +92,63 @@ impl ActiveStroke {
         }
     }
 
-    /// Advects points of the surface at the beginning of the stroke through all moves so far.
-    /// Returns the number of field evaluations.
-    pub(super) fn advect(&self, points: &mut [DVec3]) -> u64 {
-        let advect = |chunk: &mut [DVec3]| self.path.iter().map(|segment| segment.advect(chunk)).sum::<u64>();
-        points.par_chunks_mut(CHUNK).map(advect).sum()
+    /// The poses before and after a move of the path.
+    pub(super) fn poses_of(&self, index: usize) -> [field::Pose; 2] {
+        let first = self.first_key() + index;
+        // Recorded keys are valid.
+        [first, first + 1].map(|key| self.keys[key].pose().unwrap_or(field::Pose::IDENTITY))
     }
 
-    /// Notes triangles with a vertex that moved; `count` is the number of all triangles.
-    pub(super) fn note_moved(&mut self, triangles: &[u32], count: usize) {
-        self.moved_marks.resize(count);
-        self.moved.extend(triangles.iter().filter(|&&triangle| self.moved_marks.insert(triangle)));
+    /// Index of the key at the beginning of the path.
+    fn first_key(&self) -> usize {
+        self.keys.len() - 1 - self.phase.path.len()
+    }
+
+    /// Ends the stroke after some `whole` moves of the path, or at `key` in the next move. `path` is
+    /// the path up to there, and `fraction` is the fraction of the old path before the end.
+    pub(super) fn stop(&mut self, key: Option<Key>, path: Path, fraction: f64, sheets: Option<Sheets>) {
+        let (first, asked) = (self.first_key(), self.keys.len() - 1);
+        let moves = fraction * self.phase.path.len() as f64;
+        let last = first + moves as usize;
+        self.stopped = Some(Stopped { moves: first as f64 + moves, asked, sheets });
+        self.keys.truncate(last + 1);
+        if let Some(key) = key {
+            let [before, after] = [self.times[last], self.times[last + 1]];
+            self.keys.push(key);
+            self.times[last + 1] = before + moves.fract() * (after - before);
+        }
+        self.times.truncate(self.keys.len());
+        self.receipt.moves = self.keys.len() - 1;
+        self.phase.path = path;
+        self.phase.midpoints.clear();
+    }
+
+    /// Makes the surface the base of the rest of the stroke.
+    pub(super) fn rebase(&mut self, surface: &mut Surface) {
+        self.moved_before = self.moved_volume(surface);
+        for &vertex in self.phase.vertices.items() {
+            surface.bases.rebase(vertex, surface.position(vertex));
+        }
+        let Phase { path, midpoints, triangles, vertices, inserted } = &mut self.phase;
+        path.segments.clear();
+        midpoints.clear();
+        triangles.clear();
+        vertices.clear();
+        *inserted = 0;
+    }
+
+    /// Fraction of the stroke at which it was ended. `None` if it was not.
+    pub(super) fn stopped_at(&self) -> Option<f64> {
+        self.stopped.map(|stopped| stopped.moves / stopped.asked as f64)
+    }
+
+    /// Notes splits and the triangles `changed` that were moved or split.
+    pub(super) fn note(&mut self, surface: &Surface, changed: &[u32], splits: &Splits) {
+        let triangles = surface.corners.items().len();
+        self.touched.extend(changed, triangles);
+        self.phase.triangles.extend(changed, triangles);
+        self.phase.vertices.extend(&splits.inserted, surface.positions.items().len());
+        self.phase.inserted += splits.inserted.len();
+        splits.volumes.iter().for_each(|&volume| self.splits.add(volume));
     }
 }

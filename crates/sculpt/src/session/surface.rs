@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use isochore_mesh::{Aabb, EditMesh, FreeSlots, Journaled, NONE, Origin, SurfaceTree, TriMesh};
 
-use super::{NormalWeights, buffers::DirtyBuffers, inserted::InsertedVertices, marks::Marks};
+use super::{NormalWeights, base_points::BasePoints, buffers::DirtyBuffers, marks::Marks};
 
 /// A vertex as seen by the triangles on one side of a seam.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,10 +67,12 @@ pub(super) struct Surface {
     /// Whether the mesh has any hard edge.
     pub(super) has_hard_edges: bool,
     dirty: DirtyBuffers,
-    pub(super) inserted: InsertedVertices,
+    pub(super) bases: BasePoints,
     /// Scratch sets of the selections.
     pub(super) triangle_marks: Marks,
     pub(super) vertex_marks: Marks,
+    /// Scratch numbers of vertices in a part of the surface.
+    pub(super) numbers: Vec<u32>,
 }
 
 /// Spare capacity of all arrays as a fraction of the size of the mesh as opened, so that the
@@ -105,7 +107,7 @@ impl Surface {
             free_render: FreeSlots::new(count as u32),
             merges: Journaled::default(),
             renewed: (0..count as u32).collect(),
-            inserted: InsertedVertices::new(opened.positions.len()),
+            bases: BasePoints::default(),
             normals: Journaled::new(vec![[0.0; 3]; count]),
             uvs: vec![Vec::new(); opened.corner.uvs.len()],
             colors: Vec::new(),
@@ -114,6 +116,7 @@ impl Surface {
             dirty: DirtyBuffers::default(),
             triangle_marks: Marks::default(),
             vertex_marks: Marks::default(),
+            numbers: Vec::new(),
             opened,
         };
         let spare = |length: usize| (length as f64 * SPARE_CAPACITY) as usize + 1024;
@@ -141,10 +144,57 @@ impl Surface {
         surface
     }
 
-    /// Position of a vertex on the surface at the beginning of the stroke.
+    /// Position of a vertex on the base.
     pub(super) fn base(&self, vertex: u32) -> DVec3 {
         let existing = || self.positions.original(vertex).unwrap_or_else(|| self.positions.get(vertex));
-        self.inserted.base(vertex).unwrap_or_else(existing)
+        self.bases.position(vertex).unwrap_or_else(existing)
+    }
+
+    /// Position of a vertex on the surface at the beginning of the stroke. For a vertex that the
+    /// stroke has inserted, the corresponding point of that surface.
+    pub(super) fn start(&self, vertex: u32) -> DVec3 {
+        let existing = || self.positions.original(vertex).unwrap_or_else(|| self.positions.get(vertex));
+        self.bases.inserted_at(vertex).unwrap_or_else(existing)
+    }
+
+    /// Midpoint of the edge between two vertices on the surface at the beginning of the stroke.
+    pub(super) fn start_midpoint(&self, ends: [u32; 2]) -> DVec3 {
+        let [a, b] = ends.map(|vertex| self.start(vertex));
+        0.5 * (a + b)
+    }
+
+    /// Midpoint of the edge between two vertices on the base.
+    pub(super) fn base_midpoint(&self, ends: [u32; 2]) -> DVec3 {
+        let [a, b] = ends.map(|vertex| self.base(vertex));
+        0.5 * (a + b)
+    }
+
+    /// Ends of the edges 01, 12 and 20 of a triangle, the smaller first.
+    pub(super) fn edges_of(&self, triangle: u32) -> [[u32; 2]; 3] {
+        let [a, b, c] = self.topology.triangles()[triangle as usize].vertices;
+        [[a, b], [b, c], [c, a]].map(|[one, other]| [one.min(other), one.max(other)])
+    }
+
+    /// The longest edge of a triangle. Ties go to the edge with the larger ends, so that both
+    /// triangles at an edge agree.
+    pub(super) fn longest_edge(&self, triangle: u32) -> [u32; 2] {
+        let edges = self.edges_of(triangle);
+        let lengths = edges.map(|[a, b]| self.position(a).distance_squared(self.position(b)));
+        let order =
+            |&one: &usize, &other: &usize| lengths[one].total_cmp(&lengths[other]).then(edges[one].cmp(&edges[other]));
+        (0..3).max_by(order).map_or(edges[0], |side| edges[side])
+    }
+
+    /// A half-edge between two vertices. `None` if there is no such edge.
+    pub(super) fn half_edge(&self, [a, b]: [u32; 2]) -> Option<u32> {
+        // A boundary edge has a half-edge in one direction only.
+        self.topology.half_edge(a, b).or_else(|| self.topology.half_edge(b, a))
+    }
+
+    /// The triangles on both sides of an edge; [`NONE`] beyond the boundary.
+    pub(super) fn triangles_beside(&self, half_edge: u32) -> [u32; 2] {
+        let twin = self.topology.twin(half_edge);
+        [half_edge / 3, if twin == NONE { NONE } else { twin / 3 }]
     }
 
     /// Corners of a triangle. `None` if it is removed.

@@ -20,25 +20,14 @@ pub struct MovedVolume {
 }
 
 impl ActiveStroke {
-    /// All triangles that the stroke moved or edited, each once.
-    pub(super) fn touched<'a>(&'a self, surface: &'a Surface) -> impl Iterator<Item = u32> + 'a {
-        let journal = surface.topology.journal();
-        let added = journal.original_len() as u32..journal.items().len() as u32;
-        let is_moved = |triangle: u32| self.moved_marks.contains(triangle);
-        self.moved
-            .iter()
-            .copied()
-            .chain(journal.edited().filter(move |&triangle| !is_moved(triangle)))
-            .chain(added.filter(move |&triangle| !is_moved(triangle)))
-    }
-
     /// Change of the volume so far.
     pub(super) fn volume(&self, surface: &Surface) -> StrokeVolume {
         let journal = surface.topology.journal();
         // Old and new triangles together are closed, so any origin gives the same sum. A near one
         // keeps rounding small.
-        let origin =
-            self.touched(surface).find_map(|triangle| surface.corners_of(triangle)).map_or(DVec3::ZERO, |c| c[0]);
+        let touched = self.touched.items();
+        let corners = touched.iter().find_map(|&triangle| surface.corners_of(triangle));
+        let origin = corners.map_or(DVec3::ZERO, |corners| corners[0]);
         let mut total = CompensatedSum::default();
         let mut size = self.remeshed;
         let mut add = |corners: [DVec3; 3], sign: f64| {
@@ -46,9 +35,9 @@ impl ActiveStroke {
             total.add(sign * a.dot(b.cross(c)) / 6.0);
             size += a.length() * b.length() * c.length();
         };
-        for triangle in self.touched(surface) {
+        for &triangle in touched {
             if let Some(before) = journal.original(triangle).filter(|before| before.is_alive()) {
-                add(before.vertices.map(|vertex| surface.base(vertex)), -1.0);
+                add(before.vertices.map(|vertex| surface.start(vertex)), -1.0);
             }
             if let Some(after) = surface.corners_of(triangle) {
                 add(after, 1.0);
@@ -59,10 +48,10 @@ impl ActiveStroke {
     }
 
     /// Volume moved so far: for each triangle, the mean displacement of its corners along its mean
-    /// normal. Motion to and fro counts by the net displacement.
+    /// normal. Motion to and fro counts by the net displacement since the base was made.
     pub(super) fn moved_volume(&self, surface: &Surface) -> MovedVolume {
-        let mut moved = MovedVolume::default();
-        for triangle in self.touched(surface) {
+        let mut moved = self.moved_before;
+        for &triangle in self.phase.triangles.items() {
             let record = surface.topology.triangles()[triangle as usize];
             if !record.is_alive() {
                 continue;

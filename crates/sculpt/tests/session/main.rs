@@ -2,6 +2,7 @@
 
 mod attributes;
 mod buffers;
+mod crossings;
 mod keys;
 mod locking;
 mod own_tools;
@@ -49,7 +50,7 @@ fn ball() -> Session {
 /// repeatedly would make it grow without end.
 fn refined(longest: f64) -> StrokeOptions {
     let refine =
-        InteractiveRefinement { longest: Some(longest), max_triangles: 12_000, ..InteractiveRefinement::default() };
+        InteractiveRefinement { longest: Some(longest), max_triangles: 60_000, ..InteractiveRefinement::default() };
     StrokeOptions { refine: Some(refine) }
 }
 

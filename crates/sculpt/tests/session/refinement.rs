@@ -58,7 +58,8 @@ fn receipts_report_the_change_of_the_volume() {
 fn finer_limits_change_less_volume() {
     let bare = |longest: f64| {
         let mut session = ball();
-        let options = InteractiveRefinement { longest: Some(longest), ..InteractiveRefinement::default() };
+        let options =
+            InteractiveRefinement { longest: Some(longest), deviation: Some(1.0), ..InteractiveRefinement::default() };
         let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(options) }, &press(0.35));
         receipt.volume.unwrap().bare().abs()
     };
@@ -239,8 +240,9 @@ fn only_triangles_near_the_path_of_the_tool_are_edited() {
     let longest = longest.fold(0.0, f64::max);
     let step = poses.windows(2).map(|pair| pair[0].translation.distance(pair[1].translation)).fold(0.0, f64::max);
     // The ball around a triangle that may be touched extends an edge beyond the support, and its
-    // corners another edge. A split also cuts the triangle on the other side of its edge.
-    let reach = 0.2 + 0.25 + 0.5 * step + 3.0 * longest;
+    // corners another edge. The longest edge nearby, which is split for an edge that is too long, can
+    // be a few triangles farther.
+    let reach = 0.2 + 0.25 + 0.5 * step + 5.0 * longest;
     let (mut far, mut near) = (0, 0);
     for (triangle, corners) in (0_u32..).zip(&mesh.triangles) {
         let is_far = |&vertex: &u32| {
@@ -307,9 +309,9 @@ fn stirring_does_not_add_triangles_without_end() {
         let options = InteractiveRefinement { longest: Some(0.06), ..InteractiveRefinement::default() };
         let receipt = stroke(&mut session, &brush(), StrokeOptions { refine: Some(options) }, &poses);
         assert_sound(&session);
-        // About 700 triangles of that size are in reach, a cap of radius 0.6. Each of the four
-        // halvings makes four triangles of one. Without the bound, each move would double them.
+        // About 700 triangles of that size are in reach, a cap of radius 0.6. Without bounds, each move
+        // would double them.
         assert!(session.triangle_count() < 256 * 700, "{}", session.triangle_count());
-        assert!(!receipt.is_limited && receipt.refused_splits > 0, "{receipt:?}");
+        assert!(!receipt.is_limited && (receipt.refused_splits > 0 || receipt.stopped_at.is_some()), "{receipt:?}");
     }
 }

@@ -8,7 +8,12 @@ fn refining() -> StrokeOptions {
 
 /// Only collapses, all edges that the stroke squeezes to half.
 fn coarsening() -> StrokeOptions {
-    let refine = InteractiveRefinement { longest: Some(1.0), collapse: 0.3, ..InteractiveRefinement::default() };
+    let refine = InteractiveRefinement {
+        longest: Some(1.0),
+        deviation: Some(1.0),
+        collapse: 0.3,
+        ..InteractiveRefinement::default()
+    };
     StrokeOptions { refine: Some(refine) }
 }
 
@@ -97,7 +102,7 @@ fn vertex_map_returns_the_replacement_of_removed_vertices() {
     let (mut session, mut unrefined) = (ball(), ball());
     let opened: Vec<u32> = (0..session.vertex_count() as u32).collect();
     assert_eq!(session.vertex_map(), opened);
-    let (mut maps, mut onto_inserted) = (vec![opened.clone()], 0);
+    let mut maps = vec![opened.clone()];
     for round in 0..24 {
         let (is_back, direction) = (round % 2 == 1, [DVec3::X, DVec3::Y, DVec3::NEG_Z][round / 2 % 3]);
         let options = if is_back { coarsening() } else { refining() };
@@ -115,10 +120,10 @@ fn vertex_map_returns_the_replacement_of_removed_vertices() {
         let farthest = opened.iter().map(|&vertex| distance(vertex)).fold(0.0, f64::max);
         // No collapse spans more than 0.3, and the brush leaves nothing stretched after its return.
         assert!(!is_back || farthest < 0.3, "{farthest}");
-        onto_inserted += map.iter().filter(|&&kept| kept as usize >= opened.len()).count();
         maps.push(map);
     }
-    assert!(onto_inserted > 100 && session.vertex_map() != opened, "{onto_inserted}");
+    let replaced = session.vertex_map().iter().zip(&opened).filter(|(kept, vertex)| kept != vertex).count();
+    assert!(replaced > 5, "{replaced}");
     for expected in maps.iter().rev().skip(1) {
         assert!(session.undo().unwrap());
         assert_eq!(session.vertex_map(), *expected);

@@ -17,6 +17,13 @@ pub struct StrokeReceipt {
     pub(super) receipt: session::StrokeReceipt,
 }
 
+/// Two sheets of a surface that come close to each other.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Sheets {
+    sheets: session::Sheets,
+}
+
 /// Size of the undo history.
 #[wasm_bindgen]
 #[derive(Debug)]
@@ -38,29 +45,24 @@ impl MoveReceipt {
         self.receipt.inserted_vertices as u32
     }
 
-    /// Number of vertices that collapses removed.
-    #[wasm_bindgen(getter, js_name = removedVertices)]
-    pub fn removed_vertices(&self) -> u32 {
-        self.receipt.removed_vertices as u32
-    }
-
-    /// Number of flipped edges.
-    #[wasm_bindgen(getter, js_name = flippedEdges)]
-    pub fn flipped_edges(&self) -> u32 {
-        self.receipt.flipped_edges as u32
-    }
-
     /// Whether the limit on triangles prevented splits.
     #[wasm_bindgen(getter, js_name = isLimited)]
     pub fn is_limited(&self) -> bool {
         self.receipt.is_limited
     }
 
-    /// Number of edges that remain too long because the stroke has distorted the surface too much
-    /// for a split to help.
+    /// Number of edges that remain too long or too coarse because the stroke has distorted the
+    /// surface too much for a split to help.
     #[wasm_bindgen(getter, js_name = refusedSplits)]
     pub fn refused_splits(&self) -> u32 {
         self.receipt.refused_splits as u32
+    }
+
+    /// Whether the stroke has been ended, because the surface would cross itself farther on. Later
+    /// moves of the stroke have no effect.
+    #[wasm_bindgen(getter, js_name = isStopped)]
+    pub fn is_stopped(&self) -> bool {
+        self.receipt.is_stopped
     }
 }
 
@@ -84,13 +86,13 @@ impl StrokeReceipt {
         self.receipt.inserted_vertices as u32
     }
 
-    /// Number of vertices that collapses removed.
+    /// Number of vertices that collapses removed at the end of the stroke.
     #[wasm_bindgen(getter, js_name = removedVertices)]
     pub fn removed_vertices(&self) -> u32 {
         self.receipt.removed_vertices as u32
     }
 
-    /// Number of flipped edges.
+    /// Number of edges that were flipped at the end of the stroke.
     #[wasm_bindgen(getter, js_name = flippedEdges)]
     pub fn flipped_edges(&self) -> u32 {
         self.receipt.flipped_edges as u32
@@ -102,8 +104,8 @@ impl StrokeReceipt {
         self.receipt.is_limited
     }
 
-    /// Largest number of edges in any move that remained too long because the stroke has distorted
-    /// the surface too much for a split to help.
+    /// Largest number of edges in any move that remained too long or too coarse because the stroke
+    /// has distorted the surface too much for a split to help.
     #[wasm_bindgen(getter, js_name = refusedSplits)]
     pub fn refused_splits(&self) -> u32 {
         self.receipt.refused_splits as u32
@@ -148,10 +150,38 @@ impl StrokeReceipt {
 
     /// Reason why the volume lock was skipped, or undefined if it was applied. `off`: the session
     /// has it disabled. `needs_closed`: the surface is open. `no_hold`: the moved vertices cannot
-    /// change the volume, and the lock of the next stroke corrects the remaining error.
+    /// change the volume. `crossings`: sheets of the surface are so close that the lock would make
+    /// them cross. In the last two cases the lock of the next stroke corrects the remaining error.
     #[wasm_bindgen(getter, js_name = lockSkipped)]
     pub fn lock_skipped(&self) -> Option<String> {
         self.receipt.lock_skipped.map(|skipped| skipped.name().to_owned())
+    }
+
+    /// Fraction of the stroke, from 0 to 1, at which it was ended because the surface would have
+    /// crossed itself, or undefined. The log contains the shortened stroke. A stroke that was ended
+    /// at 0 leaves no trace.
+    #[wasm_bindgen(getter, js_name = stoppedAt)]
+    pub fn stopped_at(&self) -> Option<f64> {
+        self.receipt.stopped_at
+    }
+
+    /// The two sheets that would have crossed, when the stroke was ended, or undefined.
+    #[wasm_bindgen(getter)]
+    pub fn sheets(&self) -> Option<Sheets> {
+        self.receipt.sheets.map(|sheets| Sheets { sheets })
+    }
+
+    /// Number of pairs of triangles that the stroke made cross. Zero unless this stroke, or an
+    /// earlier one, had `refine: false`.
+    #[wasm_bindgen(getter)]
+    pub fn crossings(&self) -> u32 {
+        self.receipt.crossings as u32
+    }
+
+    /// Wall time of finding and removing crossings, seconds.
+    #[wasm_bindgen(getter, js_name = certificateSeconds)]
+    pub fn certificate_seconds(&self) -> f64 {
+        self.receipt.certificate_seconds
     }
 
     /// Memory that undo holds for this stroke, in bytes.
@@ -164,6 +194,21 @@ impl StrokeReceipt {
     #[wasm_bindgen(getter, js_name = forgottenStrokes)]
     pub fn forgotten_strokes(&self) -> u32 {
         self.receipt.forgotten_strokes as u32
+    }
+}
+
+#[wasm_bindgen]
+impl Sheets {
+    /// Distance between the sheets, model units.
+    #[wasm_bindgen(getter)]
+    pub fn gap(&self) -> f64 {
+        self.sheets.gap
+    }
+
+    /// The point midway between the sheets: x, y, z, model units.
+    #[wasm_bindgen(getter)]
+    pub fn at(&self) -> Vec<f64> {
+        self.sheets.at.to_array().to_vec()
     }
 }
 

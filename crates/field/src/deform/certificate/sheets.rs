@@ -21,14 +21,58 @@ const SEARCHED: usize = 256;
 /// one curved sheet for two; a smaller value misses sheets that meet at an angle.
 const FACING: f64 = -0.2;
 
+impl Sheets {
+    /// The gap between two triangles that do not cross: the shortest of the distances between their
+    /// edges, and from the corners of each to the other.
+    pub fn between(a: [DVec3; 3], b: [DVec3; 3]) -> Self {
+        let edge = |corners: [DVec3; 3], side: usize| [corners[side], corners[(side + 1) % 3]];
+        let edges = (0..9).map(|index| closest_on_segments(edge(a, index / 3), edge(b, index % 3)));
+        let corners = (0..3).flat_map(|index| [[a[index], foot(a[index], b)], [b[index], foot(b[index], a)]]);
+        let sheets = |[p, q]: [DVec3; 2]| Self { gap: p.distance(q), at: 0.5 * (p + q) };
+        let none = Self { gap: f64::INFINITY, at: a[0] };
+        edges.chain(corners).map(sheets).fold(none, |one, other| if other.gap < one.gap { other } else { one })
+    }
+
+    /// The closest two sheets among some triangles, given by the numbers of their vertices and their
+    /// corners: triangles without a common vertex that face in opposite directions. `None` if there are
+    /// none. Takes time proportional to the square of the number of triangles.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use isochore_field::Sheets;
+    ///
+    /// let lower = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// let upper = [DVec3::Z, DVec3::Z + DVec3::Y, DVec3::Z + DVec3::X];
+    /// let sheets = Sheets::closest(&[([0, 1, 2], lower), ([3, 4, 5], upper)]).unwrap();
+    /// assert_eq!(sheets.gap, 1.0);
+    /// ```
+    pub fn closest(triangles: &[([u32; 3], [DVec3; 3])]) -> Option<Self> {
+        let directions: Vec<DVec3> =
+            triangles.iter().map(|(_, [a, b, c])| (*b - *a).cross(*c - *a).normalize_or_zero()).collect();
+        let mut closest: Option<Self> = None;
+        for (index, (vertices, one)) in triangles.iter().enumerate() {
+            for (other_index, (others, other)) in triangles[..index].iter().enumerate() {
+                let are_neighbors = others.iter().any(|vertex| vertices.contains(vertex));
+                if are_neighbors || directions[index].dot(directions[other_index]) > FACING {
+                    continue;
+                }
+                let sheets = Self::between(*one, *other);
+                if closest.is_none_or(|closest| sheets.gap < closest.gap) {
+                    closest = Some(sheets);
+                }
+            }
+        }
+        closest
+    }
+}
+
 /// The place where a pair of triangles crosses.
 pub(in crate::deform) fn crossing_place(mesh: &Tessellation, image: &[DVec3], pair: [u32; 2]) -> DVec3 {
     let [a, b] = pair.map(|index| mesh.triangles[index as usize].map(|vertex| image[vertex as usize]));
-    between(a, b).at
+    Sheets::between(a, b).at
 }
 
-/// The closest two sheets at the positions `image` around a place: triangles without a common vertex
-/// that face in opposite directions.
+/// The closest two sheets at the positions `image` around a place.
 pub(in crate::deform) fn closest_sheets(mesh: &Tessellation, image: &[DVec3], place: DVec3) -> Option<Sheets> {
     let corners = |index: u32| mesh.triangles[index as usize].map(|vertex| image[vertex as usize]);
     let middle = |[a, b, c]: [DVec3; 3]| (a + b + c) / 3.0;
@@ -38,39 +82,8 @@ pub(in crate::deform) fn closest_sheets(mesh: &Tessellation, image: &[DVec3], pl
     if searched < near.len() {
         near.select_nth_unstable_by(searched, |one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
     }
-    let near: Vec<(u32, [DVec3; 3], DVec3)> = near[..searched]
-        .iter()
-        .map(|&(_, index)| {
-            let [a, b, c] = corners(index);
-            (index, [a, b, c], (b - a).cross(c - a).normalize_or_zero())
-        })
-        .collect();
-    let mut closest: Option<Sheets> = None;
-    for (number, (index, one, normal)) in near.iter().enumerate() {
-        for (other_index, other, other_normal) in &near[..number] {
-            let vertices = mesh.triangles[*index as usize];
-            let are_neighbors = mesh.triangles[*other_index as usize].iter().any(|vertex| vertices.contains(vertex));
-            if are_neighbors || normal.dot(*other_normal) > FACING {
-                continue;
-            }
-            let sheets = between(*one, *other);
-            if closest.is_none_or(|closest| sheets.gap < closest.gap) {
-                closest = Some(sheets);
-            }
-        }
-    }
-    closest
-}
-
-/// The gap between two triangles that do not cross: the shortest of the distances between their edges,
-/// and from the corners of each to the other.
-fn between(a: [DVec3; 3], b: [DVec3; 3]) -> Sheets {
-    let edge = |corners: [DVec3; 3], side: usize| [corners[side], corners[(side + 1) % 3]];
-    let edges = (0..9).map(|index| closest_on_segments(edge(a, index / 3), edge(b, index % 3)));
-    let corners = (0..3).flat_map(|index| [[a[index], foot(a[index], b)], [b[index], foot(b[index], a)]]);
-    let sheets = |[p, q]: [DVec3; 2]| Sheets { gap: p.distance(q), at: 0.5 * (p + q) };
-    let none = Sheets { gap: f64::INFINITY, at: a[0] };
-    edges.chain(corners).map(sheets).fold(none, |one, other| if other.gap < one.gap { other } else { one })
+    let triangle = |&(_, index): &(f64, u32)| (mesh.triangles[index as usize], corners(index));
+    Sheets::closest(&near[..searched].iter().map(triangle).collect::<Vec<_>>())
 }
 
 /// The closest points of two segments.
@@ -112,7 +125,7 @@ mod tests {
     #[test]
     fn a_corner_above_a_triangle() {
         let above = [dvec3(0.25, 0.25, 0.1), dvec3(0.25, 0.25, 1.0), dvec3(0.5, 0.25, 1.0)];
-        let sheets = between(FLAT, above);
+        let sheets = Sheets::between(FLAT, above);
         assert!((sheets.gap - 0.1).abs() < 1e-15);
         assert!(sheets.at.distance(dvec3(0.25, 0.25, 0.05)) < 1e-15);
     }
@@ -120,7 +133,7 @@ mod tests {
     #[test]
     fn crossing_directions_of_edges() {
         let beside = [dvec3(0.5, -0.2, -1.0), dvec3(0.5, -0.2, 1.0), dvec3(0.5, -2.0, 0.0)];
-        let sheets = between(FLAT, beside);
+        let sheets = Sheets::between(FLAT, beside);
         assert!((sheets.gap - 0.2).abs() < 1e-15, "{sheets:?}");
         assert!(sheets.at.distance(dvec3(0.5, -0.1, 0.0)) < 1e-15);
     }
@@ -128,7 +141,7 @@ mod tests {
     #[test]
     fn triangles_without_area() {
         let point = [dvec3(0.0, 0.0, 2.0); 3];
-        assert_eq!(between(FLAT, point).gap, 2.0);
-        assert_eq!(between(point, point).gap, 0.0);
+        assert_eq!(Sheets::between(FLAT, point).gap, 2.0);
+        assert_eq!(Sheets::between(point, point).gap, 0.0);
     }
 }

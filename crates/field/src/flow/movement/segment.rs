@@ -238,11 +238,12 @@ impl Segment {
         self.comes_near(center, radius, |local| {
             let clearance = bounds.distance(local);
             let (distance, _) = tool.distance().sample(local);
-            if clearance > radius || distance.is_infinite() {
-                clearance
-            } else {
-                (distance - tool.support()) / tool.distance().lipschitz()
+            if distance.is_infinite() {
+                return clearance;
             }
+            // The corners of the box are far from most supports.
+            let nearer = (distance - tool.support()) / tool.distance().lipschitz();
+            if clearance > radius { clearance.max(nearer) } else { nearer }
         })
     }
 

@@ -5,7 +5,11 @@ use std::cmp::Reverse;
 use glam::DVec3;
 use isochore_mesh::{NONE, previous_half_edge};
 
-use super::{edits::Edits, pass::Pass};
+use super::{
+    pass::Pass,
+    tidying::{GOOD_SHAPE, LEAST_SHAPE, Tidied, shape},
+};
+use crate::session::origin::nearest_weights;
 
 /// An edge is collapsed only if the stroke has squeezed it below this fraction of its length at the
 /// beginning of the stroke. Larger destroys detail of a mesh that is merely finer than the tool;
@@ -16,88 +20,114 @@ const SQUEEZED: f64 = 0.5;
 /// surface; smaller allows folds.
 const MOST_TURN: f64 = 0.7;
 
-/// Result of collapsing edges.
-#[derive(Debug, Default)]
-pub(super) struct Collapses {
-    /// Triangles at the removed vertices, removed triangles included.
-    pub(super) triangles: Vec<u32>,
-    /// Volume that each collapse adds.
-    pub(super) volumes: Vec<f64>,
-}
-
-impl From<Collapses> for Edits {
-    fn from(collapses: Collapses) -> Self {
-        Self {
-            triangles: collapses.triangles,
-            removed_vertices: collapses.volumes.len(),
-            remeshing_volumes: collapses.volumes,
-            ..Self::default()
-        }
-    }
-}
+/// Vertices that strokes have inserted are removed if that makes no edge longer than this fraction of
+/// the longest allowed one. Larger coarsens where the next stroke refines again; smaller leaves
+/// triangles that nothing needs.
+const SUPERFLUOUS: f64 = 0.5;
 
 impl Pass<'_> {
-    /// Collapses edges that the stroke has squeezed, shortest first.
-    pub(super) fn collapse(&mut self, mut short: Vec<(f64, [u32; 2])>) -> Collapses {
-        let mut collapses = Collapses::default();
-        short.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        short.dedup_by_key(|(_, edge)| *edge);
-        for (_, ends) in short {
-            let Some(half_edge) = self.is_squeezed(ends).then(|| self.harmless_collapse(ends)).flatten() else {
-                continue;
-            };
-            let removed = self.surface.topology.start(half_edge);
-            collapses.triangles.extend(self.surface.topology.fan(removed).map(|outgoing| outgoing / 3));
-            collapses.volumes.push(self.surface.collapse(half_edge));
+    /// Collapses those edges of `triangles` that the stroke has squeezed, and edges at inserted
+    /// vertices that the shape does not need. Shortest first.
+    pub(super) fn collapse(&mut self, triangles: &[u32]) -> Tidied {
+        let mut tidied = Tidied::default();
+        if self.limits.shortest == 0.0 {
+            return tidied;
         }
-        collapses
+        let edges = self.edges_among(triangles, |half_edge| self.may_collapse(half_edge)).into_iter();
+        let mut short: Vec<(f64, [u32; 2])> = edges.map(|ends| (self.surface.length(ends), ends)).collect();
+        short.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (_, ends) in short {
+            let Some(half_edge) = self.harmless_collapse(ends) else { continue };
+            let topology = &self.surface.topology;
+            let fan: Vec<u32> = topology.fan(topology.start(half_edge)).map(|outgoing| outgoing / 3).collect();
+            tidied.volumes.push(self.surface.collapse(half_edge));
+            tidied.removed_vertices += 1;
+            self.surface.update_tree(&fan);
+            tidied.triangles.extend(fan);
+        }
+        tidied
+    }
+
+    /// Whether an edge is short enough, and its collapse is harmless before any other edit.
+    fn may_collapse(&self, half_edge: u32) -> bool {
+        let topology = &self.surface.topology;
+        let ends = [topology.start(half_edge), topology.end(half_edge)];
+        let is_short = self.surface.length(ends) < SUPERFLUOUS * self.limits.longest || self.is_squeezed(ends);
+        is_short && self.harmless_collapse(ends).is_some()
     }
 
     fn is_squeezed(&self, ends: [u32; 2]) -> bool {
-        let length2 = |ends: [DVec3; 2]| ends[0].distance_squared(ends[1]);
-        let now = length2(ends.map(|vertex| self.surface.position(vertex)));
-        let before = length2(ends.map(|vertex| self.surface.base(vertex)));
-        now < self.limits.shortest2 && now < SQUEEZED * SQUEEZED * before
+        let [start, end] = ends.map(|vertex| self.surface.start(vertex));
+        let now = self.surface.length(ends);
+        now < self.limits.shortest && now < SQUEEZED * start.distance(end)
     }
 
     /// The half-edge whose start can be merged into its end. Inserted vertices, which have larger
     /// numbers, are removed first.
     fn harmless_collapse(&self, ends: [u32; 2]) -> Option<u32> {
         let half_edge = self.editable(ends)?;
+        let is_squeezed = self.is_squeezed(ends);
         let topology = &self.surface.topology;
         let mut directions = [half_edge, topology.twin(half_edge)];
         directions.sort_by_key(|&half_edge| Reverse(if half_edge == NONE { 0 } else { topology.start(half_edge) }));
-        directions.into_iter().find(|&half_edge| self.is_harmless(half_edge))
+        directions.into_iter().find(|&half_edge| self.is_harmless(half_edge, is_squeezed))
     }
 
-    /// Whether the start of a half-edge can be merged into its end without a fold, a torn seam, or
-    /// an edge that is too long.
-    fn is_harmless(&self, half_edge: u32) -> bool {
+    /// Whether the start of a half-edge can be merged into its end without a fold, a crossing, a
+    /// torn seam, or an edge that is too long. If the edge is not squeezed, the start must be an
+    /// inserted vertex, and the worst triangle must not become worse.
+    fn is_harmless(&self, half_edge: u32, is_squeezed: bool) -> bool {
         if half_edge == NONE {
             return false;
         }
         let surface = &*self.surface;
         let topology = &surface.topology;
         let (removed, kept) = (topology.start(half_edge), topology.end(half_edge));
-        if !(surface.is_free(removed) && topology.can_collapse(half_edge)) {
+        if !surface.is_free(removed) {
+            return false;
+        }
+        if !is_squeezed && (removed as usize) < surface.opened.positions.len() {
             return false;
         }
         let [old, new] = [removed, kept].map(|vertex| surface.position(vertex));
         if self.mask.is_some_and(|mask| mask.is_held(old)) {
             return false;
         }
-        topology.fan(removed).all(|outgoing| {
+        let longest = if is_squeezed { self.limits.longest } else { SUPERFLUOUS * self.limits.longest };
+        let reach = topology.fan(removed).map(|outgoing| old.distance(surface.position(topology.end(outgoing))));
+        let longest = reach.fold(longest, f64::max);
+        let mut fan = Vec::new();
+        let mut remaining = Vec::new();
+        for outgoing in topology.fan(removed) {
+            fan.push(outgoing / 3);
             let [b, c] = [topology.end(outgoing), topology.start(previous_half_edge(outgoing))];
             // The two triangles at the edge vanish.
             if b == kept || c == kept {
-                return true;
+                continue;
             }
             let [b, c] = [b, c].map(|vertex| surface.position(vertex));
             let normal = |a: DVec3| (b - a).cross(c - a);
             let (before, after) = (normal(old), normal(new));
             let is_upright = before.dot(after) > MOST_TURN * before.length() * after.length();
-            let longest2 = self.limits.longest2;
-            is_upright && new.distance_squared(b) <= longest2 && new.distance_squared(c) <= longest2
-        })
+            if !is_upright || new.distance(b) > longest || new.distance(c) > longest {
+                return false;
+            }
+            remaining.push([new, b, c]);
+        }
+        let worst = |shapes: &mut dyn Iterator<Item = [DVec3; 3]>| shapes.map(shape).fold(f64::INFINITY, f64::min);
+        let before = worst(&mut fan.iter().filter_map(|&triangle| surface.corners_of(triangle)));
+        let after = worst(&mut remaining.iter().copied());
+        if after < LEAST_SHAPE || (!is_squeezed && after < before.min(GOOD_SHAPE)) {
+            return false;
+        }
+        let distance = |corners: &[DVec3; 3]| {
+            let weights = nearest_weights(old, corners);
+            old.distance(weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2])
+        };
+        let wear = remaining.iter().map(distance).fold(f64::INFINITY, f64::min);
+        wear <= self.wear()
+            && topology.can_collapse(half_edge)
+            && !self.would_fold(&remaining, &fan)
+            && !self.would_cross(&remaining, &fan)
     }
 }

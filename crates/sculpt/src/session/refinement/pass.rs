@@ -1,35 +1,39 @@
-//! The surface, the rules and the permission to edit, for all kinds of edits.
+//! The surface, the rules and the permission to split.
 
 use glam::DVec3;
 use isochore_field::Mask;
 use isochore_mesh::NONE;
 
-use super::survey::Limits;
-use crate::session::{InteractiveRefinement, stroke::ActiveStroke, surface::Surface};
+use super::{Limits, Midpoints};
+use crate::session::{InteractiveRefinement, SessionTool, path::Path, surface::Surface};
 
-/// The surface to refine, and the rules. A pass edits only the surface; its result says what it
-/// did.
+/// The surface to refine, and the rules. A pass edits only the surface and the midpoints; its
+/// result says what it did.
 pub(in crate::session) struct Pass<'a> {
-    pub(super) surface: &'a mut Surface,
-    pub(super) stroke: &'a ActiveStroke,
+    pub(in crate::session) surface: &'a mut Surface,
+    pub(in crate::session) midpoints: &'a mut Midpoints,
+    /// The path of the tool since the base.
+    pub(in crate::session) path: &'a Path,
     pub(super) mask: Option<&'a Mask>,
     pub(super) options: &'a InteractiveRefinement,
-    pub(super) limits: Limits,
+    pub(in crate::session) limits: Limits,
 }
 
 impl<'a> Pass<'a> {
     pub(in crate::session) fn new(
         surface: &'a mut Surface,
-        stroke: &'a ActiveStroke,
+        midpoints: &'a mut Midpoints,
+        path: &'a Path,
         mask: Option<&'a Mask>,
         options: &'a InteractiveRefinement,
+        tool: &SessionTool,
     ) -> Self {
-        Self { surface, stroke, mask, options, limits: options.limits(&stroke.tool) }
+        Self { surface, midpoints, path, mask, options, limits: options.limits(tool) }
     }
 
     /// The half-edge between two vertices, or `None` if it does not exist, an end is frozen, or a
     /// ball or the mask keeps the edge.
-    pub(super) fn editable(&self, [a, b]: [u32; 2]) -> Option<u32> {
+    pub(in crate::session) fn editable(&self, [a, b]: [u32; 2]) -> Option<u32> {
         let topology = &self.surface.topology;
         let is_fixed = |vertex: u32| topology.outgoing(vertex) == NONE || self.surface.is_frozen(vertex);
         if is_fixed(a) || is_fixed(b) {
@@ -39,8 +43,7 @@ impl<'a> Pass<'a> {
         if !self.options.keep.is_empty() && self.options.is_kept(ends) || is_held(self.mask, ends) {
             return None;
         }
-        // A boundary edge has a half-edge in one direction only.
-        topology.half_edge(a, b).or_else(|| topology.half_edge(b, a))
+        self.surface.half_edge([a, b])
     }
 }
 

@@ -1,81 +1,86 @@
-//! Splits of long edges.
+//! Splits of edges that are too long or deviate too much.
 
-use glam::DVec3;
+use std::ops::AddAssign;
 
-use super::{
-    edits::Edits,
-    pass::Pass,
-    survey::{Limits, MayTouch, survey},
-};
+use isochore_mesh::NONE;
 
-/// Rounds of splitting in one pass. Each halves the long edges, so ten rounds resolve edges a
-/// thousand times too long. The next move splits the rest.
-const MAX_ROUNDS: usize = 10;
+use super::{pass::Pass, survey::MayTouch};
 
-/// How many times one stroke may halve an edge whose ends it has moved. Larger follows the flow
-/// farther where it stirs without end, as at the rim of a core that crosses the surface, where each
-/// halving may double the triangles; smaller leaves deep pulls coarse.
-const MOST_HALVINGS: u8 = 4;
+/// Rounds of splitting in one pass. Each halves edges, so these rounds resolve edges a thousand
+/// times too long. The next move splits the rest.
+const MAX_ROUNDS: usize = 40;
+
+/// Triangles between a bad edge and the edge that is split for it. Larger spreads splits farther
+/// from the tool; smaller makes slivers.
+const LONGEST_WALK: usize = 16;
 
 /// Result of splitting edges.
 #[derive(Debug, Default)]
-pub(super) struct Splits {
-    /// Triangles at the inserted vertices.
-    pub(super) triangles: Vec<u32>,
+pub(in crate::session) struct Splits {
+    /// Triangles at the inserted vertices, in the order of the splits; a triangle may occur more
+    /// than once.
+    pub(in crate::session) triangles: Vec<u32>,
+    /// Inserted vertices.
+    pub(in crate::session) inserted: Vec<u32>,
     /// Volume that each inserted vertex adds.
-    pub(super) volumes: Vec<f64>,
+    pub(in crate::session) volumes: Vec<f64>,
     /// Whether the limit on triangles prevented splits.
-    pub(super) is_limited: bool,
-    /// Long edges that are not split because they were halved too often.
-    pub(super) refused: usize,
+    pub(in crate::session) is_limited: bool,
+    /// Bad edges that are not split because they are too short in the base; the maximum over all
+    /// passes.
+    pub(in crate::session) refused: usize,
     /// Evaluations of the field.
-    pub(super) evaluations: u64,
+    pub(in crate::session) evaluations: u64,
 }
 
-impl From<Splits> for Edits {
-    fn from(splits: Splits) -> Self {
-        Self {
-            triangles: splits.triangles,
-            split_volumes: splits.volumes,
-            is_limited: splits.is_limited,
-            refused_splits: splits.refused,
-            evaluations: splits.evaluations,
-            ..Self::default()
-        }
+impl AddAssign for Splits {
+    fn add_assign(&mut self, other: Self) {
+        self.triangles.extend(other.triangles);
+        self.inserted.extend(other.inserted);
+        self.volumes.extend(other.volumes);
+        self.is_limited |= other.is_limited;
+        self.refused = self.refused.max(other.refused);
+        self.evaluations += other.evaluations;
     }
 }
 
 impl Pass<'_> {
-    /// Splits long edges, longest first, and then the long edges that this leaves, up to
-    /// [`MAX_ROUNDS`] times.
+    /// Splits bad edges of the triangles `active` that pass `may_touch`, or else have moved, and then the bad edges that
+    /// this leaves, up to [`MAX_ROUNDS`] times.
     ///
-    /// A new vertex starts in the middle of the edge on the surface at the beginning of the stroke.
-    /// It is advected through all moves of the stroke so far, and so it is the image of that point
-    /// and not the midpoint of the deformed edge.
+    /// A new vertex starts in the middle of the edge on the base and is advected through the path,
+    /// so it is the image of that point and not the midpoint of the deformed edge.
     ///
-    /// If the stroke stirs the surface, edges would be split without end. After [`MOST_HALVINGS`]
-    /// an edge is refused instead.
-    pub(super) fn split(&mut self, mut long: Vec<(f64, [u32; 2])>, may_touch: Option<MayTouch<'_>>) -> Splits {
+    /// For each bad edge, the longest edge around it is split, and the bad edge only once it is the
+    /// longest of its triangles (M.-C. Rivara, *New longest-edge algorithms for the refinement
+    /// and/or improvement of unstructured triangulations*, 1997). Otherwise shear would make ever
+    /// thinner triangles. Lengths are those of the image, so that triangles that the flow has
+    /// stretched are split across.
+    pub(super) fn split(&mut self, mut active: Vec<u32>, may_touch: Option<MayTouch<'_>>) -> Splits {
         let mut splits = Splits::default();
         let mut refused = Vec::new();
         for _ in 0..MAX_ROUNDS {
-            long.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            long.dedup_by_key(|(_, edge)| *edge);
-            long.retain(|&(_, edge)| self.editable(edge).is_some());
-            refused.extend(long.extract_if(.., |(_, ends)| self.halvings(*ends) > MOST_HALVINGS).map(|(_, ends)| ends));
+            let survey = self.survey(&active, may_touch);
+            splits.evaluations += survey.evaluations;
+            refused.extend(survey.refused);
+            let mut chosen: Vec<[u32; 2]> = survey.bad.iter().flat_map(|&bad| self.edges_to_split(bad)).collect();
+            chosen.sort_unstable();
+            chosen.dedup();
             // A split adds two triangles.
             let capacity = self.limits.max_triangles.saturating_sub(self.surface.topology.alive()) / 2;
-            splits.is_limited |= long.len() > capacity;
-            long.truncate(capacity);
-            if long.is_empty() {
+            splits.is_limited |= chosen.len() > capacity;
+            self.sort_by_length(&mut chosen);
+            chosen.truncate(capacity);
+            let round = self.split_all(&chosen);
+            if round.volumes.is_empty() {
                 break;
             }
-            let round = self.split_once(&long);
-            let only_long = Limits { shortest2: 0.0, flip: false, ..self.limits };
-            long = survey(self.surface, &round.triangles, &only_long, may_touch).long;
-            splits.triangles.extend(round.triangles);
-            splits.volumes.extend(round.volumes);
-            splits.evaluations += round.evaluations;
+            let remaining = survey.bad.iter().filter_map(|&bad| self.surface.half_edge(bad));
+            let beside = remaining.flat_map(|half_edge| self.surface.triangles_beside(half_edge));
+            active = beside.filter(|&triangle| triangle != NONE).chain(round.triangles.iter().copied()).collect();
+            active.sort_unstable();
+            active.dedup();
+            splits += round;
         }
         refused.sort_unstable();
         refused.dedup();
@@ -83,34 +88,56 @@ impl Pass<'_> {
         splits
     }
 
-    /// Splits each of the edges `long`, unless another split of this round has changed it.
-    fn split_once(&mut self, long: &[(f64, [u32; 2])]) -> Splits {
-        let mut splits = Splits::default();
-        let bases: Vec<DVec3> = long.iter().map(|&(_, ends)| self.base_midpoint(ends)).collect();
-        let mut images = bases.clone();
-        splits.evaluations = self.stroke.advect(&mut images);
-        for ((&(_, ends), base), image) in long.iter().zip(bases).zip(images) {
+    fn sort_by_length(&self, edges: &mut [[u32; 2]]) {
+        let length = |ends: &[u32; 2]| self.surface.length(*ends);
+        edges.sort_unstable_by(|a, b| length(b).total_cmp(&length(a)).then(a.cmp(b)));
+    }
+
+    /// Splits `edges`, unless another split of this call has changed them.
+    pub(in crate::session) fn split_all(&mut self, edges: &[[u32; 2]]) -> Splits {
+        let followed = self.midpoints.follow(self.surface, self.path, edges);
+        let mut splits = Splits { evaluations: followed.evaluations, ..Splits::default() };
+        for (&ends, image) in edges.iter().zip(followed.images) {
             // An image that overflows cannot be inserted.
             let Some(half_edge) = self.editable(ends).filter(|_| image.is_finite()) else { continue };
-            let halvings = self.halvings(ends);
+            let (base, start) = (self.surface.base_midpoint(ends), self.surface.start_midpoint(ends));
             let (split, volume) = self.surface.split(half_edge, image);
-            self.surface.inserted.push(split.vertex, base, halvings);
+            self.surface.bases.insert(split.vertex, base, start);
+            splits.inserted.push(split.vertex);
             splits.volumes.push(volume);
             splits.triangles.extend(split.near.into_iter().chain(split.far.into_iter().flatten()));
         }
         splits
     }
 
-    /// Midpoint of an edge on the surface at the beginning of the stroke.
-    fn base_midpoint(&self, ends: [u32; 2]) -> DVec3 {
-        let [a, b] = ends.map(|vertex| self.surface.base(vertex));
-        0.5 * (a + b)
+    /// The edges to split for the sake of a bad edge: for each of its triangles, the first edge on
+    /// the walk across longest edges that is the longest of both of its triangles. The bad edge
+    /// itself if that edge cannot be split.
+    fn edges_to_split(&self, bad: [u32; 2]) -> Vec<[u32; 2]> {
+        let Some(half_edge) = self.surface.half_edge(bad) else { return Vec::new() };
+        let beside = self.surface.triangles_beside(half_edge).into_iter().filter(|&triangle| triangle != NONE);
+        let found = beside.map(|triangle| {
+            let longest = self.walk(triangle);
+            if self.editable(longest).is_some() && self.is_divisible(longest) { longest } else { bad }
+        });
+        found.collect()
     }
 
-    /// Number of halvings of a vertex inserted between two others.
-    fn halvings(&self, ends: [u32; 2]) -> u8 {
-        let has_moved = ends.iter().any(|&end| self.surface.base(end) != self.surface.position(end));
-        let [one, other] = ends.map(|end| self.surface.inserted.halvings(end));
-        one.max(other) + u8::from(has_moved)
+    /// Walks across longest edges from a triangle. The last edge is the longest of both of its
+    /// triangles, or at the boundary.
+    fn walk(&self, mut triangle: u32) -> [u32; 2] {
+        let surface = &*self.surface;
+        let mut longest = surface.longest_edge(triangle);
+        for _ in 0..LONGEST_WALK {
+            let beside = surface.half_edge(longest).map(|half_edge| surface.triangles_beside(half_edge));
+            let beyond = beside.and_then(|beside| beside.into_iter().find(|&other| other != triangle && other != NONE));
+            let Some(beyond) = beyond else { break };
+            let next = surface.longest_edge(beyond);
+            if next == longest {
+                break;
+            }
+            (triangle, longest) = (beyond, next);
+        }
+        longest
     }
 }

@@ -23,7 +23,7 @@ pub(in crate::session) struct SurfaceDelta {
 impl Surface {
     /// Starts recording the changes of a stroke. Returns the number of triangles.
     pub(in crate::session) fn begin(&mut self) -> usize {
-        self.inserted.clear();
+        self.bases.clear();
         self.positions.begin();
         self.offsets.begin();
         self.frozen.begin();
