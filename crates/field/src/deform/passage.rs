@@ -100,7 +100,7 @@ impl Passage {
             };
             let mut begin = 0;
             while begin < flows.len() {
-                let part = flow(surface, &mut flows[begin..], context)?;
+                let part = flow(surface, &mut flows[begin..], context, passage.rebases > 0)?;
                 begin += part.strokes.len();
                 passage.add(part);
                 // After a rebase the map is not exact anyway, so triangles are merged at the end too.
@@ -129,16 +129,22 @@ impl Passage {
     }
 }
 
-/// Advects the surface through the first of `strokes`, until a rebase is due. `strokes` must not include a
-/// stamp.
-fn flow(surface: &mut Tessellation, strokes: &mut [Stroke], context: &Context<'_>) -> Result<Passage, Cancelled> {
+/// Advects the surface through the first of `strokes`, until a rebase is due. `has_rebased` is whether one
+/// has been made before. `strokes` must not include a stamp.
+fn flow(
+    surface: &mut Tessellation,
+    strokes: &mut [Stroke],
+    context: &Context<'_>,
+    has_rebased: bool,
+) -> Result<Passage, Cancelled> {
     let volume = surface.image_volume();
     let mut passage = Passage { base_volume: volume, ..Passage::default() };
     let mut done = 0;
     while done < strokes.len() {
         done += 1;
         passage.add_stroke(surface, &mut strokes[..done], context)?;
-        if context.criteria.is_some_and(|criteria| criteria.rebase().is_due(surface.image.len(), done)) {
+        let vertices = surface.image.len();
+        if context.criteria.is_some_and(|criteria| criteria.rebase().is_due(vertices, done, has_rebased)) {
             break;
         }
     }

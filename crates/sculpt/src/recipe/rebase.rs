@@ -25,8 +25,8 @@ pub enum Rebase {
 pub enum RebaseRule {
     /// Every vertex follows all strokes from the target.
     Never,
-    /// When the number of vertices, multiplied by the number of strokes since the last rebase, passes
-    /// 100,000.
+    /// When the number of vertices, multiplied by the number of strokes, passes 100,000, and from then on
+    /// after each stroke.
     Auto,
 }
 

@@ -13,6 +13,10 @@ const LEAST_TURN: f64 = 0.8;
 /// triangles before were no better. A larger value keeps more triangles; a smaller value makes slivers.
 const QUALITY: f64 = 0.3;
 
+/// A merge never makes a triangle of less than this quality: an angle of 0.2°. A larger value leaves slivers
+/// beside those that cannot be merged; a smaller value lets rounding decide to which side a triangle faces.
+const LEAST_QUALITY: f64 = 0.007;
+
 /// Rounding of sums of barycentric areas.
 const ROUNDING: f64 = 1e-9;
 
@@ -124,7 +128,7 @@ fn is_sound(pieces: &[Piece], ring: &[(u32, Piece)], image: &[DVec3], limits: &L
         let normal = normal(&corners);
         let longest = edge_lengths(&corners).into_iter().fold(0.0, f64::max);
         longest <= limits.max_edge
-            && quality(&corners) >= QUALITY.min(quality_before)
+            && quality(&corners) >= QUALITY.min(quality_before).max(LEAST_QUALITY)
             && normals.iter().all(|&(parent, before)| {
                 parent != piece.parent || before == DVec3::ZERO || before.dot(normal) >= LEAST_TURN
             })

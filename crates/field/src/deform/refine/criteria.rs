@@ -43,24 +43,25 @@ pub struct RefineOptions {
 pub enum Rebase {
     /// Never.
     Never,
-    /// When the number of vertices, multiplied by the number of strokes since the last rebase, passes
-    /// 100,000.
+    /// When the number of vertices, multiplied by the number of strokes, passes 100,000, and from then on
+    /// after each stroke.
     #[default]
     Auto,
     /// After this number of strokes, at least one.
     Every(usize),
 }
 
-/// Vertices times strokes at which [`Rebase::Auto`] rebases. A larger value keeps the exact map for longer;
+/// Vertices times strokes at which [`Rebase::Auto`] rebases for the first time. A larger value keeps the exact map for longer;
 /// a smaller value rebases works of a few strokes.
 const BUDGET: usize = 100_000;
 
 impl Rebase {
-    /// Whether a rebase is due.
-    pub(crate) fn is_due(self, vertices: usize, strokes: usize) -> bool {
+    /// Whether a rebase is due after a number of strokes since the last one, if there was one.
+    pub(crate) fn is_due(self, vertices: usize, strokes: usize, has_rebased: bool) -> bool {
         match self {
             Self::Never => false,
-            Self::Auto => vertices.saturating_mul(strokes) > BUDGET,
+            // Once the map is not exact, more triangles would only cost time.
+            Self::Auto => has_rebased || vertices.saturating_mul(strokes) > BUDGET,
             Self::Every(count) => strokes >= count.max(1),
         }
     }
