@@ -24,7 +24,7 @@ static const uint32_t FACES[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
 
 static const char *const BALL = "{\"shape\": {\"kind\": \"sphere\", \"radius\": 0.3}, \"support\": 0.3}";
 static const char *const WIDE_BALL = "{\"shape\": {\"kind\": \"sphere\", \"radius\": 0.4}, \"support\": 1}";
-static const IsochoreStrokeOptions UNREFINED = {true, 0, 0, NULL, 0}, FINE = {false, 0.2, 0, NULL, 0};
+static const IsochoreStrokeOptions UNREFINED = {true, 0, 0, NULL, 0, 0}, FINE = {false, 0.2, 0, NULL, 0, 0};
 
 static const char *const TWIST =
     "{ \"recipe\": 1, \"target\": { \"mesh\": \"tetrahedron\" }, \"stroke\": [ { \"kind\": \"twist\","
@@ -327,7 +327,7 @@ static void queries(void) {
 
     /* A kept ball around everything, or an exhausted triangle limit, prevents all splits. */
     const double around[] = {0, 0, 0, 3};
-    IsochoreStrokeOptions strokes[] = {{false, 0.2, 0, around, 1}, {false, 0.2, 4, NULL, 0}, FINE};
+    IsochoreStrokeOptions strokes[] = {{false, 0.2, 0, around, 1, 0}, {false, 0.2, 4, NULL, 0, 0}, FINE};
     for (int stroke = 0; stroke < 3; stroke++) {
         CHECK(isochore_tool_new("ball", BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
         CHECK(isochore_session_begin_stroke(session, tool, &strokes[stroke]) == ISOCHORE_STATUS_OK);

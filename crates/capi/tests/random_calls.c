@@ -212,7 +212,7 @@ int main(void) {
     CHECK(isochore_tool_new("ball", BALL, NULL, 0, NULL, NULL, &tool) == ISOCHORE_STATUS_OK);
     for (calls = 0; calls < CALLS; calls++) {
         const double turn[4] = {1, 2, 3, 120 * number()}, keep[4] = {at[0], at[1], at[2], number()};
-        const IsochoreStrokeOptions options = {below(4) == 0, 0.4 + 0.4 * number(), 200, keep, below(2)};
+        const IsochoreStrokeOptions options = {below(4) == 0, 0.4 + 0.4 * number(), 200, keep, below(2), 0};
         uint32_t frozen[2] = {below(8), below(8)};
         IsochoreStatus status = ISOCHORE_STATUS_OK;
         IsochoreMoveReceipt move;
