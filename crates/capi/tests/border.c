@@ -277,7 +277,7 @@ static void sessions(void) {
 
 /* Queries that a host uses for drawing. The session remains valid after its mesh and its tool are freed. */
 static void queries(void) {
-    const double above[] = {0.2, 0.2, 0.5}, below[] = {0.2, 0.2, 0.3}, turn[] = {0, 0, 1, 90}, nowhere[] = {NAN, 0, 0};
+    const double above[] = {0.2, 0.2, 0.5}, below[] = {0.2, 0.2, 0.3}, turn[] = {0, 0, 1, 90}, small_turn[] = {0, 0, 1, 20}, nowhere[] = {NAN, 0, 0};
     IsochoreMesh *mesh = tetrahedron();
     IsochoreTool *tool = NULL;
     IsochoreSession *session = NULL;
@@ -321,7 +321,7 @@ static void queries(void) {
     CHECK(isochore_session_begin_stroke(session, tool, &FINE) == ISOCHORE_STATUS_OK);
     isochore_tool_free(tool);
     CHECK(isochore_session_move_to(session, above, NULL, 0, NULL) == ISOCHORE_STATUS_OK);
-    CHECK(isochore_session_move_to(session, below, turn, 1, NULL) == ISOCHORE_STATUS_OK);
+    CHECK(isochore_session_move_to(session, below, small_turn, 1, NULL) == ISOCHORE_STATUS_OK);
     CHECK(isochore_session_moved_volume(session, &outward, &inward) == ISOCHORE_STATUS_OK && outward > 0 && inward > 0);
     CHECK(isochore_session_cancel_stroke(session) == ISOCHORE_STATUS_OK);
 

@@ -38,6 +38,7 @@ impl Session {
         let inserted = stroke.receipt.inserted_vertices;
         receipt.seconds.certificate = self.certify(&mut stroke);
         stroke.receipt.seconds.certificate += receipt.seconds.certificate;
+        stroke.moved_before = stroke.moved_volume(&self.surface);
         if stroke.stopped.is_none() {
             let bad = self.surface.badly_shaped(stroke.phase.triangles.items());
             self.tidy(&mut stroke, &bad);

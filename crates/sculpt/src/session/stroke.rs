@@ -123,9 +123,9 @@ impl ActiveStroke {
         self.phase.midpoints.clear();
     }
 
-    /// Makes the surface the base of the rest of the stroke.
+    /// Makes the surface the base of the rest of the stroke. The volume that the stroke has moved must
+    /// have been noted before.
     pub(super) fn rebase(&mut self, surface: &mut Surface) {
-        self.moved_before = self.moved_volume(surface);
         for &vertex in self.phase.vertices.items() {
             surface.bases.rebase(vertex, surface.position(vertex));
         }
