@@ -11,9 +11,9 @@ use std::time::Instant;
 
 use glam::DVec3;
 use isochore_field::Pose;
-use isochore_mesh::{NoProgress, SelfIntersections, TriMesh, primitives::icosphere};
+use isochore_mesh::{NoProgress, primitives::icosphere};
 use isochore_sculpt::{
-    Meshes,
+    Measures, Meshes,
     recipe::{Profile, Sphere, Tool, ToolShape},
     session::{Session, SessionOptions, SessionTool, StrokeOptions},
 };
@@ -45,7 +45,7 @@ fn main() {
     let tool = Tool { shape, support: RADIUS, profile: Profile::Quintic, free_form: 0.0 };
     let tool = Arc::new(SessionTool::new("ball", tool, &Meshes::new(), &NoProgress).expect("is a tool"));
     println!(
-        "| strokes | triangles | crossing | angles below 5° | median move | longest move | longest end | stopped |"
+        "| strokes | triangles | crossing | with an angle below 5° | median move | longest move | longest end | stopped |"
     );
     println!("|---:|---:|---:|---:|---:|---:|---:|---:|");
     let (mut moves, mut longest_end, mut stopped) = (Vec::new(), 0.0_f64, 0);
@@ -60,13 +60,15 @@ fn main() {
         stopped += usize::from(receipt.is_some_and(|receipt| receipt.stopped_at.is_some()));
         if (index + 1).is_multiple_of(strokes.div_ceil(ROWS)) {
             moves.sort_by(f64::total_cmp);
-            let [flow, shown] = [false, true].map(|is_locked| session.export(is_locked).mesh);
+            let [flow, shown] = [false, true].map(|is_locked| {
+                Measures::of(&session.export(is_locked).mesh, &NoProgress).expect("triangles are valid")
+            });
             println!(
                 "| {} | {} | {} | {:.2} % | {:.1} ms | {:.0} ms | {longest_end:.0} ms | {stopped} |",
                 index + 1,
                 session.triangle_count(),
-                crossing_triangles(&flow).max(crossing_triangles(&shown)),
-                100.0 * small_angles(&flow),
+                flow.self_intersecting_triangles.max(shown.self_intersecting_triangles),
+                100.0 * flow.angle_below_5_degrees,
                 moves[moves.len() / 2],
                 moves[moves.len() - 1],
             );
@@ -104,22 +106,4 @@ fn timed(work: impl FnOnce()) -> f64 {
     let start = Instant::now();
     work();
     1e3 * start.elapsed().as_secs_f64()
-}
-
-fn crossing_triangles(mesh: &TriMesh) -> usize {
-    SelfIntersections::of(mesh, &NoProgress).map_or(0, |found| found.triangles().len())
-}
-
-/// Fraction of all angles that are below 5°.
-fn small_angles(mesh: &TriMesh) -> f64 {
-    let angles = (0..mesh.triangles.len()).flat_map(|triangle| {
-        let corners = mesh.corners(triangle);
-        [0, 1, 2].map(|side| {
-            let [a, b, c] = [0, 1, 2].map(|step| corners[(side + step) % 3]);
-            (b - a).angle_between(c - a)
-        })
-    });
-    // Triangles without area have an angle of zero or NaN.
-    let small = angles.filter(|angle| angle.is_nan() || *angle < 5_f64.to_radians()).count();
-    small as f64 / (3 * mesh.triangles.len()) as f64
 }

@@ -1,11 +1,12 @@
 //! `isochore distance`: the signed distance of a mesh as a NumPy array.
 
-use isochore_mesh::{DistanceField, DistanceFieldError, DistanceFieldOptions, Padding, io};
+use isochore_mesh::{DistanceField, DistanceFieldError, DistanceFieldOptions, Padding};
 use npyz::WriterBuilder;
 use serde::Serialize;
 
 use crate::{
-    arguments::DistanceArguments, command_error::CommandError, console::Console, outcome::Outcome, staging::Staging,
+    arguments::DistanceArguments, command_error::CommandError, console::Console, mesh_file::read_mesh,
+    outcome::Outcome, staging::Staging,
 };
 
 /// Contents of the JSON file beside the array.
@@ -29,10 +30,7 @@ pub(crate) fn distance(arguments: &DistanceArguments, console: &Console) -> Resu
     let array_draft = staging.add_file(&arguments.output)?;
     let metadata_draft = staging.add_file(&arguments.output.with_extension("json"))?;
 
-    let mesh = io::read(&arguments.mesh)?;
-    for note in &mesh.assets.notes {
-        console.warn("warning", format_args!("{}: {note}", arguments.mesh.display()));
-    }
+    let mesh = read_mesh(&arguments.mesh, console)?;
     let options = DistanceFieldOptions {
         resolution: arguments.resolution as usize,
         padding: arguments.padding.map_or(Padding::Cells(2), Padding::Length),

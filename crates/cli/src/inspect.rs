@@ -1,10 +1,12 @@
 //! `isochore inspect`: mesh statistics.
 
-use isochore_mesh::{ClosedMesh, SelfIntersectionError, SelfIntersections, TriMesh, io};
+use isochore_mesh::{ClosedMesh, SelfIntersectionError, SelfIntersections, TriMesh};
 use isochore_sculpt::Bounds;
 use serde::Serialize;
 
-use crate::{arguments::InspectArguments, command_error::CommandError, console::Console, outcome::Outcome};
+use crate::{
+    arguments::InspectArguments, command_error::CommandError, console::Console, mesh_file::read_mesh, outcome::Outcome,
+};
 
 /// Statistics of a mesh.
 #[derive(Debug, Clone, Serialize)]
@@ -24,10 +26,7 @@ struct Statistics {
 }
 
 pub(crate) fn inspect(arguments: &InspectArguments, console: &Console) -> Result<Outcome, CommandError> {
-    let mesh = io::read(&arguments.mesh)?;
-    for note in &mesh.assets.notes {
-        console.warn("warning", format_args!("{}: {note}", arguments.mesh.display()));
-    }
+    let mesh = read_mesh(&arguments.mesh, console)?;
     let statistics = Statistics::of(&mesh, console).map_err(|error| match error {
         SelfIntersectionError::Cancelled(cancelled) => cancelled.into(),
         error => CommandError::file(&arguments.mesh, error),

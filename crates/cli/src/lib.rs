@@ -25,6 +25,7 @@ mod inspect;
 mod interrupt;
 mod job;
 mod man;
+mod mesh_file;
 mod outcome;
 mod outputs;
 mod preview;

@@ -60,8 +60,8 @@ impl Staging {
     /// Adds the file `target`. Returns the path of its draft.
     ///
     /// # Errors
-    /// `target` is a circle of symbolic links. The folder of `target` is missing or cannot be written, `target` exists and is not a regular
-    /// file, or it was added before.
+    /// `target` is a circle of symbolic links. The folder of `target` is missing or cannot be written,
+    /// `target` exists and is not a regular file, or it was added before.
     pub(crate) fn add_file(&mut self, target: &Path) -> Result<PathBuf, CommandError> {
         let place = mesh_io::follow_links(target).map_err(|error| CommandError::cannot("write", target, &error))?;
         if self.files.iter().any(|staged| staged.place == place) {

@@ -20,7 +20,7 @@ use isochore_mesh::{ClosedMesh, Monitor, Topology, TriMesh, signed_volume};
 
 pub use certificate::Sheets;
 pub use error::DeformError;
-pub use lock::{Lock, lock_part, lock_part_weighted, lock_volume};
+pub use lock::{Lock, lock_part, lock_volume};
 pub use press::PressError;
 pub use receipt::{Note, Receipt, StageSeconds, StrokeReceipt};
 pub use refine::{Rebase, RefineOptions};

@@ -177,7 +177,7 @@ mod flow;
 
 pub use deform::{
     DeformError, DeformOptions, Deformed, Lock, Note, PressError, Rebase, Receipt, RefineOptions, Sheets, StageSeconds,
-    StrokeReceipt, deform, lock_part, lock_part_weighted, lock_volume,
+    StrokeReceipt, deform, lock_part, lock_volume,
 };
 pub use fields::{
     BodyTwist, Bone, Field, FieldBlock, JointedTool, JointedToolError, Mask, MaskError, MirrorPlane, MovingField,

@@ -433,7 +433,7 @@ class Session:
         The receipt has the counts of all moves and these keys:
 
         removed_vertices, flipped_edges: number of vertices that collapses removed, and of edges that
-            were flipped, at the end of the stroke.
+            were flipped.
         volume: signed volume changes by "flow", "splits" and "remeshing", and a bound on their
             "rounding" error, cubic model units; None if the surface is open.
         lock_max_shift: largest displacement by the volume lock, model units, or None if the lock

@@ -49,7 +49,7 @@ export interface SessionOptions {
 
 /** Options of a stroke. */
 export interface StrokeOptions {
-  /** Whether edges in reach of the tool are split, some are collapsed or flipped at the end of the stroke, and crossings of the surface with itself are prevented. Default: true. */
+  /** Whether edges in reach of the tool are split, some are collapsed or flipped, and crossings of the surface with itself are prevented. Default: true. */
   refine?: boolean;
   /** Edges longer than this are split, model units. */
   longestEdge?: number;

@@ -39,8 +39,7 @@ pub struct SessionOptions {
 #[derive(Debug, Clone, Copy)]
 pub struct StrokeOptions {
     /// Disables refinement. Otherwise edges in reach of the tool are split, some of them are
-    /// collapsed or flipped at the end of the stroke, and crossings of the surface with itself are
-    /// prevented.
+    /// collapsed or flipped, and crossings of the surface with itself are prevented.
     pub keep_triangles: bool,
     /// Edges longer than this are split, model units.
     pub longest_edge: f64,

@@ -73,9 +73,9 @@ pub struct StrokeReceipt {
     pub touched_vertices: usize,
     /// Number of vertices that splits inserted.
     pub inserted_vertices: usize,
-    /// Number of vertices that collapses removed at the end of the stroke.
+    /// Number of vertices that collapses removed.
     pub removed_vertices: usize,
-    /// Number of edges that were flipped at the end of the stroke.
+    /// Number of edges that were flipped.
     pub flipped_edges: usize,
     /// Whether the limit on triangles prevented splits.
     pub is_limited: bool,

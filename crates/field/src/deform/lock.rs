@@ -65,19 +65,11 @@ pub(crate) fn lock_with_weights(
 /// Moves `image`, a part of a closed surface, so that the volume inside the whole surface grows by
 /// `gain`. `triangles` must include all triangles at the moved vertices, and `size` is the volume of
 /// the whole. Time is proportional to the part. Returns `None` as [`lock_volume`] does.
-///
-/// # Panics
-/// If an index is out of range, or `rest` is not as long as `image`.
-pub fn lock_part(rest: &[DVec3], image: &mut [DVec3], triangles: &[[u32; 3]], gain: f64, size: f64) -> Option<Lock> {
-    lock_part_weighted(rest, image, triangles, &vec![1.0; image.len()], gain, size)
-}
-
-/// Like [`lock_part`], with the displacement of each vertex multiplied by a weight. A vertex of weight
-/// zero stays.
+/// The displacement of each vertex is multiplied by its weight; a vertex of weight zero stays.
 ///
 /// # Panics
 /// If an index is out of range, or `rest` or `weights` is not as long as `image`.
-pub fn lock_part_weighted(
+pub fn lock_part(
     rest: &[DVec3],
     image: &mut [DVec3],
     triangles: &[[u32; 3]],

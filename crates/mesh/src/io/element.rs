@@ -31,7 +31,7 @@ pub(super) fn has_repeated_corner(corners: &[u32]) -> bool {
 
 /// Whether a triangle has three vertices. A polygon that visits a vertex twice may be split into
 /// triangles that do not.
-pub(super) fn is_triangle(&[a, b, c]: &[u32; 3]) -> bool {
+pub(super) fn is_triangle<T: PartialEq>([a, b, c]: &[T; 3]) -> bool {
     a != b && b != c && c != a
 }
 

@@ -124,28 +124,26 @@ pub(super) fn numbered_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Words
 
 /// Reads up to `N` finite numbers and returns them with their count. Further words are ignored.
 pub(super) fn read_numbers<const N: usize>(
-    mut words: Words<'_>,
+    words: Words<'_>,
     expected: usize,
 ) -> Result<([f64; N], usize), LineProblem> {
-    let mut numbers = [0.0; N];
-    for found in 0..N {
-        match words.next_number()? {
-            Some(number) => numbers[found] = number,
-            None if found < expected => return Err(LineProblem::TooFewNumbers { expected, found }),
-            None => return Ok((numbers, found)),
-        }
-    }
-    Ok((numbers, N))
+    read_with(words, expected, Words::next_number)
 }
 
 /// As [`read_numbers`], but the numbers may be infinite or NaN.
-pub(super) fn read_values<const N: usize>(
-    mut words: Words<'_>,
+pub(super) fn read_values<const N: usize>(words: Words<'_>, expected: usize) -> Result<([f64; N], usize), LineProblem> {
+    read_with(words, expected, Words::next_value)
+}
+
+#[inline]
+fn read_with<'a, const N: usize>(
+    mut words: Words<'a>,
     expected: usize,
+    next: impl Fn(&mut Words<'a>) -> Result<Option<f64>, LineProblem>,
 ) -> Result<([f64; N], usize), LineProblem> {
     let mut numbers = [0.0; N];
     for found in 0..N {
-        match words.next_value()? {
+        match next(&mut words)? {
             Some(number) => numbers[found] = number,
             None if found < expected => return Err(LineProblem::TooFewNumbers { expected, found }),
             None => return Ok((numbers, found)),

@@ -38,14 +38,14 @@ impl Session {
         let inserted = stroke.receipt.inserted_vertices;
         receipt.seconds.certificate = self.certify(&mut stroke);
         stroke.receipt.seconds.certificate += receipt.seconds.certificate;
-        stroke.moved_before = stroke.moved_volume(&self.surface);
+        let moved = stroke.moved_volume(&self.surface);
         if stroke.stopped.is_none() {
             let bad = self.surface.badly_shaped(stroke.phase.triangles.items());
             self.tidy(&mut stroke, &bad);
         }
         receipt.inserted_vertices += stroke.receipt.inserted_vertices - inserted;
         receipt.is_stopped = stroke.stopped.is_some();
-        stroke.rebase(&mut self.surface);
+        stroke.rebase(&mut self.surface, moved);
         self.stroke = Some(stroke);
     }
 

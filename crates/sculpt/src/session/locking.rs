@@ -44,7 +44,7 @@ impl ActiveStroke {
             skipped = LockSkipped::Crossings;
         }
         part.reset(surface);
-        // Also for a host that keeps all triangles: offsets of earlier locks are no help to it.
+        // A host that keeps all triangles has no use for offsets that make them cross either.
         part.release(surface, &known);
         Locked { max_shift: Err(skipped), shown_change: part.finish(surface) }
     }

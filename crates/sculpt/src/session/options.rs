@@ -90,7 +90,7 @@ impl Default for StrokeOptions {
     }
 }
 
-/// Rules by which a stroke splits edges in the tool's reach, and at its end collapses and flips some.
+/// Rules by which a stroke splits edges in the tool's reach, and collapses and flips some.
 ///
 /// A split places the new vertex exactly where the flow moves it. A collapse or a flip changes the
 /// volume slightly; the change is reported separately in
@@ -105,11 +105,11 @@ pub struct InteractiveRefinement {
     /// split, model units. By default a 256th of the tool's feature size. Edges of less than an
     /// eighth of the feature size are not split for this reason.
     pub deviation: Option<f64>,
-    /// Edges shorter than this fraction of `longest`, from 0 to 0.4, are collapsed at the end of the
-    /// stroke if it has squeezed them to less than half their length. Zero collapses none. Vertices of the mesh
-    /// as opened may be removed too.
+    /// Edges shorter than this fraction of `longest`, from 0 to 0.4, are collapsed if the stroke has
+    /// squeezed them to less than half their length: those of badly shaped triangles during the stroke,
+    /// all at its end. Zero collapses none. Vertices of the mesh as opened may be removed too.
     pub collapse: f64,
-    /// Whether to flip edges between badly shaped triangles at the end of the stroke.
+    /// Whether to flip edges of badly shaped triangles.
     pub flip: bool,
     /// Maximum number of triangles; splits stop before they exceed it.
     pub max_triangles: usize,

@@ -58,11 +58,11 @@ pub struct StrokeReceipt {
     pub duration: f64,
     /// Existing vertices that the stroke moved or removed.
     pub touched_vertices: usize,
-    /// Vertices that splits inserted, including those that were removed again at the end.
+    /// Vertices that splits inserted, including those that were removed again.
     pub inserted_vertices: usize,
-    /// Vertices that collapses removed at the end of the stroke.
+    /// Vertices that collapses removed.
     pub removed_vertices: usize,
-    /// Edges that were flipped at the end of the stroke.
+    /// Edges that were flipped.
     pub flipped_edges: usize,
     /// Whether the limit on triangles kept edges from being split.
     pub is_limited: bool,

@@ -1,8 +1,8 @@
 //! Refinement by a stroke, restricted to the triangles that it touches.
 //!
 //! During the stroke, edges are split. A split halves an edge of the base, the surface from which
-//! the flow starts, and so never bends the base. Collapses and flips would: they follow at the end
-//! of the stroke, where the image becomes the next base.
+//! the flow starts, and so never bends the base. Collapses and flips would: they follow where the
+//! image becomes the next base, at the end of the stroke and of its phases.
 
 mod collapses;
 mod flips;

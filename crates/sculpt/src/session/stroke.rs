@@ -123,9 +123,9 @@ impl ActiveStroke {
         self.phase.midpoints.clear();
     }
 
-    /// Makes the surface the base of the rest of the stroke. The volume that the stroke has moved must
-    /// have been noted before.
-    pub(super) fn rebase(&mut self, surface: &mut Surface) {
+    /// Makes the surface the base of the rest of the stroke, which has moved the volume `moved` so far.
+    pub(super) fn rebase(&mut self, surface: &mut Surface, moved: MovedVolume) {
+        self.moved_before = moved;
         for &vertex in self.phase.vertices.items() {
             surface.bases.rebase(vertex, surface.position(vertex));
         }

@@ -185,7 +185,7 @@ impl Surface {
         (0..3).max_by(order).map_or(edges[0], |side| edges[side])
     }
 
-    /// A half-edge between two vertices. `None` if there is no such edge.
+    /// A half-edge between two vertices. `None` if no edge connects them.
     pub(super) fn half_edge(&self, [a, b]: [u32; 2]) -> Option<u32> {
         // A boundary edge has a half-edge in one direction only.
         self.topology.half_edge(a, b).or_else(|| self.topology.half_edge(b, a))

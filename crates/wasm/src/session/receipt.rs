@@ -86,13 +86,13 @@ impl StrokeReceipt {
         self.receipt.inserted_vertices as u32
     }
 
-    /// Number of vertices that collapses removed at the end of the stroke.
+    /// Number of vertices that collapses removed.
     #[wasm_bindgen(getter, js_name = removedVertices)]
     pub fn removed_vertices(&self) -> u32 {
         self.receipt.removed_vertices as u32
     }
 
-    /// Number of edges that were flipped at the end of the stroke.
+    /// Number of edges that were flipped.
     #[wasm_bindgen(getter, js_name = flippedEdges)]
     pub fn flipped_edges(&self) -> u32 {
         self.receipt.flipped_edges as u32

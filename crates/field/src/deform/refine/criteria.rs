@@ -51,8 +51,8 @@ pub enum Rebase {
     Every(usize),
 }
 
-/// Vertices times strokes at which [`Rebase::Auto`] rebases for the first time. A larger value keeps the exact map for longer;
-/// a smaller value rebases works of a few strokes.
+/// Vertices times strokes at which [`Rebase::Auto`] rebases for the first time. A larger value keeps the
+/// exact map for longer; a smaller value rebases works of a few strokes.
 const BUDGET: usize = 100_000;
 
 impl Rebase {

@@ -77,33 +77,20 @@ impl Triangles {
             }
             Ok(())
         })?;
-        let of_vertex = |vertex: u32| vertices.colors.get(vertex as usize).copied().unwrap_or(DVec4::ONE);
-        if !self.colors.is_empty() {
-            let missing = self.vertices[self.colors.len()..].iter();
-            self.colors.extend(missing.map(|triangle| triangle.map(of_vertex)));
-        }
-        if !self.uvs.is_empty() {
-            let missing = self.vertices[self.uvs.len()..].iter();
-            let of_vertex = |vertex: u32| vertices.uvs.get(vertex as usize).copied().unwrap_or_default();
-            self.uvs.extend(missing.map(|triangle| triangle.map(of_vertex)));
-        }
-        if !self.normals.is_empty() {
-            let missing = self.vertices[self.normals.len()..].iter();
-            let of_vertex = |vertex: u32| vertices.normals.get(vertex as usize).copied().unwrap_or_default();
-            self.normals.extend(missing.map(|triangle| triangle.map(of_vertex)));
-        }
+        add_missing(&mut self.colors, &self.vertices, &vertices.colors, DVec4::ONE);
+        add_missing(&mut self.uvs, &self.vertices, &vertices.uvs, Vec2::ZERO);
+        add_missing(&mut self.normals, &self.vertices, &vertices.normals, Vec3::ZERO);
         self.complete(vertices);
         Ok(())
     }
 
     /// Takes attributes from the vertices that no face has as lists.
     fn complete(&mut self, vertices: &Vertices) {
-        let triangles = self;
-        if triangles.uvs.is_empty() {
-            triangles.uvs = by_corner(&triangles.vertices, &vertices.uvs);
+        if self.uvs.is_empty() {
+            self.uvs = by_corner(&self.vertices, &vertices.uvs);
         }
-        if triangles.normals.is_empty() {
-            triangles.normals = by_corner(&triangles.vertices, &vertices.normals);
+        if self.normals.is_empty() {
+            self.normals = by_corner(&self.vertices, &vertices.normals);
         }
     }
 
@@ -170,6 +157,15 @@ impl Triangles {
         let of_vertex = |vertex| vertices.colors.get(vertex).copied().unwrap_or(DVec4::ONE);
         add_list(&mut self.colors, &polygon, &face.colors, color, of_vertex);
         Ok(())
+    }
+}
+
+/// Adds the values that the vertices of the last triangles have, or else `default`, if the other
+/// triangles have some.
+fn add_missing<T: Copy>(values: &mut Vec<[T; 3]>, triangles: &[[u32; 3]], of_vertices: &[T], default: T) {
+    if !values.is_empty() {
+        let of_vertex = |vertex: u32| of_vertices.get(vertex as usize).copied().unwrap_or(default);
+        values.extend(triangles[values.len()..].iter().map(|triangle| triangle.map(of_vertex)));
     }
 }
 

@@ -4,8 +4,9 @@ use ply_rs_bw::ply::{Header, PropertyType, ScalarType};
 
 use crate::io::text::{Words, is_non_finite};
 
-/// The body with one element per line, however its lines are wrapped. Numbers that are not
-/// finite, for which the library knows no words, become numbers beyond double precision. `None` if the words do not fit the header.
+/// The body with one element per line, however its lines are wrapped. Numbers that are not finite, for
+/// which the library knows no words, become numbers beyond double precision. `None` if the words do not
+/// fit the header.
 pub(super) fn one_element_per_line(header: &Header, body: &[u8]) -> Option<Vec<u8>> {
     let mut words = Words { rest: body };
     let mut lines = Vec::with_capacity(body.len());

@@ -5,6 +5,7 @@ use ply_rs_bw::ply::{
 };
 
 use super::face_list::is_indices;
+use crate::io::element::is_triangle;
 
 /// Names for the length and the first three values of a list. They cannot occur in a header,
 /// because names there have no spaces.
@@ -40,11 +41,11 @@ impl PlainTriangle {
         (lists == 1).then_some(plain)
     }
 
-    /// The vertices, or `None` if the face is not a triangle of three vertices or an index is not below `vertices`.
+    /// The vertices, or `None` if the face is not a triangle of three vertices or an index is not below
+    /// `vertices`.
     pub(super) fn corners(&self, vertices: usize) -> Option<[u32; 3]> {
         let is_vertex = |&corner: &i64| corner >= 0 && (corner as u64) < vertices as u64;
-        let [a, b, c] = self.corners;
-        let is_plain = self.length == 3 && a != b && b != c && c != a && self.corners.iter().all(is_vertex);
+        let is_plain = self.length == 3 && is_triangle(&self.corners) && self.corners.iter().all(is_vertex);
         is_plain.then(|| self.corners.map(|corner| corner as u32))
     }
 

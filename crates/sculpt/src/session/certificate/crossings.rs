@@ -83,10 +83,7 @@ impl Surface {
         if parents[0] == parents[1] || !were_in_contact {
             return true;
         }
-        let mut involved: Vec<u32> = pairs.iter().flatten().copied().collect();
-        involved.sort_unstable();
-        involved.dedup();
-        let now: f64 = involved.into_iter().map(|triangle| self.opened_area(triangle)).sum();
+        let now: f64 = triangles_of(pairs).into_iter().map(|triangle| self.opened_area(triangle)).sum();
         now > GROWTH * (area(one) + area(other))
     }
 

@@ -1,7 +1,7 @@
 //! The part of the surface that a lock may displace.
 
 use glam::DVec3;
-use isochore_field::lock_part_weighted;
+use isochore_field::lock_part;
 use isochore_mesh::CompensatedSum;
 
 use crate::session::{
@@ -74,7 +74,7 @@ impl Part {
         // The same sums as in `rest`, so that the two are equal for a vertex that has not moved.
         let unlocked = |&vertex: &u32| surface.position(vertex) + surface.offsets.get(vertex);
         let mut image: Vec<DVec3> = self.vertices.iter().map(unlocked).collect();
-        let lock = lock_part_weighted(&self.rest, &mut image, &self.triangles, &self.weights, gain, size)?;
+        let lock = lock_part(&self.rest, &mut image, &self.triangles, &self.weights, gain, size)?;
         for index in (0..self.vertices.len()).filter(|&index| self.is_moved[index]) {
             let vertex = self.vertices[index];
             surface.offsets.set(vertex, image[index] - surface.position(vertex));

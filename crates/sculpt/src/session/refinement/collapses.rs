@@ -3,13 +3,12 @@
 use std::cmp::Reverse;
 
 use glam::DVec3;
-use isochore_mesh::{NONE, previous_half_edge};
+use isochore_mesh::{NONE, nearest_on_triangle, previous_half_edge};
 
 use super::{
     pass::Pass,
     tidying::{GOOD_SHAPE, LEAST_SHAPE, Tidied, shape},
 };
-use crate::session::origin::nearest_weights;
 
 /// An edge is collapsed only if the stroke has squeezed it below this fraction of its length at the
 /// beginning of the stroke. Larger destroys detail of a mesh that is merely finer than the tool;
@@ -75,7 +74,7 @@ impl Pass<'_> {
 
     /// Whether the start of a half-edge can be merged into its end without a fold, a crossing, a
     /// torn seam, or an edge that is too long. If the edge is not squeezed, the start must be an
-    /// inserted vertex, and the worst triangle must not become worse.
+    /// inserted vertex, and the worst triangle must not become worse unless all stay good.
     fn is_harmless(&self, half_edge: u32, is_squeezed: bool) -> bool {
         if half_edge == NONE {
             return false;
@@ -83,10 +82,8 @@ impl Pass<'_> {
         let surface = &*self.surface;
         let topology = &surface.topology;
         let (removed, kept) = (topology.start(half_edge), topology.end(half_edge));
-        if !surface.is_free(removed) {
-            return false;
-        }
-        if !is_squeezed && (removed as usize) < surface.opened.positions.len() {
+        let is_inserted = removed as usize >= surface.opened.positions.len();
+        if !(surface.is_free(removed) && (is_squeezed || is_inserted)) {
             return false;
         }
         let [old, new] = [removed, kept].map(|vertex| surface.position(vertex));
@@ -120,12 +117,8 @@ impl Pass<'_> {
         if after < LEAST_SHAPE || (!is_squeezed && after < before.min(GOOD_SHAPE)) {
             return false;
         }
-        let distance = |corners: &[DVec3; 3]| {
-            let weights = nearest_weights(old, corners);
-            old.distance(weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2])
-        };
-        let wear = remaining.iter().map(distance).fold(f64::INFINITY, f64::min);
-        wear <= self.wear()
+        let squared = remaining.iter().map(|corners| nearest_on_triangle(old, corners).1).fold(f64::INFINITY, f64::min);
+        squared.sqrt() <= self.wear()
             && topology.can_collapse(half_edge)
             && !self.would_fold(&remaining, &fan)
             && !self.would_cross(&remaining, &fan)

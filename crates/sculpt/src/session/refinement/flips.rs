@@ -8,8 +8,8 @@ use super::{
     tidying::{LEAST_SHAPE, Tidied, shape},
 };
 
-/// Cosine of the angle between two triangles that may exchange their edge. Larger refuses curved
-/// surface; smaller digs into creases.
+/// Cosine of the angle between a new triangle and the mean of the two that it replaces. Larger refuses
+/// curved surface; smaller digs into creases.
 const FLAT: f64 = 0.7;
 
 /// Factor by which a flip must improve the [`shape`] of the worse triangle. Nearer to one makes
@@ -57,8 +57,8 @@ impl Pass<'_> {
         let surface = &*self.surface;
         let topology = &surface.topology;
         let twin = topology.twin(half_edge);
-        let is_inside = |half_edge: u32| surface.triangle_marks.contains(half_edge / 3);
-        if twin == NONE || !(is_inside(half_edge) || is_inside(twin)) {
+        let is_chosen = |half_edge: u32| surface.triangle_marks.contains(half_edge / 3);
+        if twin == NONE || !(is_chosen(half_edge) || is_chosen(twin)) {
             return false;
         }
         let [a, b] = [half_edge, twin].map(|side| surface.position(topology.start(side)));
@@ -77,7 +77,8 @@ impl Pass<'_> {
             return false;
         }
         let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
-        let mean = before.map(normal)[0] + before.map(normal)[1];
+        let [one, other] = before.map(normal);
+        let mean = one + other;
         after.map(normal).iter().all(|after| after.dot(mean) > FLAT * after.length() * mean.length())
             && !self.would_fold(&after, &[half_edge / 3, twin / 3])
             && !self.would_cross(&after, &[half_edge / 3, twin / 3])

@@ -45,8 +45,8 @@ impl AddAssign for Splits {
 }
 
 impl Pass<'_> {
-    /// Splits bad edges of the triangles `active` that pass `may_touch`, or else have moved, and then the bad edges that
-    /// this leaves, up to [`MAX_ROUNDS`] times.
+    /// Splits bad edges of the triangles `active`, and then the bad edges that this leaves, up to
+    /// [`MAX_ROUNDS`] times. See [`survey`](Self::survey) for `may_touch`.
     ///
     /// A new vertex starts in the middle of the edge on the base and is advected through the path,
     /// so it is the image of that point and not the midpoint of the deformed edge.

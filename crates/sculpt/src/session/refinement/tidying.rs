@@ -1,7 +1,7 @@
-//! Collapses and flips at the end of a stroke.
+//! Collapses and flips where the image becomes the next base.
 //!
-//! They change the surface, so during a stroke they would fold the base. At the end, the image
-//! becomes the base of the next stroke. Every edit is refused that makes triangles cross.
+//! They change the surface, so anywhere else they would fold the base. Every edit is refused that
+//! folds the surface or makes triangles cross.
 
 use std::ops::AddAssign;
 
@@ -57,8 +57,8 @@ impl AddAssign for Tidied {
 }
 
 impl Pass<'_> {
-    /// Collapses squeezed and superfluous edges of `triangles`, and flips edges between two badly shaped
-    /// ones of them.
+    /// Collapses squeezed and superfluous edges of `triangles`, and flips edges of those that are badly
+    /// shaped.
     pub(in crate::session) fn tidy(&mut self, triangles: &[u32]) -> Tidied {
         let surface = &mut *self.surface;
         surface.triangle_marks.clear();
@@ -71,15 +71,14 @@ impl Pass<'_> {
         tidied
     }
 
-    /// The edges of those of `triangles` that exist and pass `filter`, given by a half-edge. Edges
-    /// between two of `triangles` may occur twice.
+    /// The edges of those of `triangles` that exist, in ascending order, if one of their half-edges
+    /// passes `filter`.
     pub(super) fn edges_among(&self, triangles: &[u32], filter: impl Fn(u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let topology = &self.surface.topology;
         let search = |chunk: &[u32]| -> Vec<[u32; 2]> {
             let alive = chunk.iter().filter(|&&triangle| topology.triangles()[triangle as usize].is_alive());
-            let half_edges = alive.flat_map(|&triangle| 3 * triangle..3 * triangle + 3);
-            let passing = half_edges.filter(|&half_edge| filter(half_edge));
-            passing.map(|half_edge| ordered([topology.start(half_edge), topology.end(half_edge)])).collect()
+            let edges = alive.flat_map(|&triangle| (3 * triangle..).zip(self.surface.edges_of(triangle)));
+            edges.filter(|&(half_edge, _)| filter(half_edge)).map(|(_, ends)| ends).collect()
         };
         let mut edges: Vec<[u32; 2]> = triangles.par_chunks(CHUNK).flat_map_iter(search).collect();
         edges.sort_unstable();
@@ -93,16 +92,17 @@ impl Pass<'_> {
     }
 
     /// Whether triangles that would replace the triangles `old` fold the surface farther than those
-    /// do: by the normals of each two that share an edge. `rim` has the triangles around.
+    /// do, measured by the normals of each two triangles that share an edge.
     pub(super) fn would_fold(&self, new: &[[DVec3; 3]], old: &[u32]) -> bool {
         let surface = &*self.surface;
         let records = surface.topology.triangles();
-        let before: Vec<[DVec3; 3]> = old.iter().filter_map(|&triangle| surface.corners_of(triangle)).collect();
         let mut rim: Vec<u32> = old.iter().flat_map(|&triangle| records[triangle as usize].twins).collect();
         rim.retain(|&twin| twin != NONE && !old.contains(&(twin / 3)));
         let rim: Vec<[DVec3; 3]> = rim.into_iter().filter_map(|twin| surface.corners_of(twin / 3)).collect();
         let after = sharpest(new, &rim);
-        after < FOLDED && (after < CLOSED || after < sharpest(&before, &rim))
+        let before =
+            || -> Vec<[DVec3; 3]> { old.iter().filter_map(|&triangle| surface.corners_of(triangle)).collect() };
+        after < FOLDED && (after < CLOSED || after < sharpest(&before(), &rim))
     }
 
     /// Whether triangles that would replace the triangles `old` cross each other or any other.
@@ -123,10 +123,6 @@ impl Pass<'_> {
         });
         crosses
     }
-}
-
-fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }
 
 impl Surface {
